@@ -1,0 +1,281 @@
+//! Arguments to inputs: by position, by name, by default; dimensions bound; values converted.
+
+use super::types::{self, Declared, Dims};
+use super::wire::Wire;
+use super::{Checker, Frame};
+use crate::diagnostic::{Place, names, types as errors};
+use crate::graph::{Scalar, Type, Value};
+use texgraph_grammar::syntax::{Dim, Input, Name};
+
+/// An argument, evaluated.
+#[derive(Clone)]
+pub struct Given<'a> {
+    /// The input's name, when it was written.
+    pub name: Option<&'a Name>,
+    /// Its value.
+    pub wire: Wire,
+    /// Where it stands.
+    pub place: Place,
+    /// The name itself, if the argument is nothing but a name: it may be a choice.
+    pub word: Option<&'a str>,
+}
+
+/// The head of what is called.
+#[derive(Clone, Copy)]
+pub struct Head<'s> {
+    /// Its name, for messages.
+    pub name: &'s str,
+    /// Its dimension variables.
+    pub dims: &'s [Name],
+    /// Its inputs.
+    pub inputs: &'s [Input],
+    /// The module whose names its defaults see.
+    pub module: usize,
+}
+
+/// A call with everything bound.
+pub struct Bound {
+    /// The dimension variables.
+    pub dims: Dims,
+    /// One wire for each input, of its declared type.
+    pub wires: Vec<Wire>,
+    /// Where each argument stands; the call's own place for defaults.
+    pub places: Vec<Place>,
+}
+
+impl<'a> Checker<'a> {
+    /// Binds a call's arguments. None when something is wrong (and reported) or waits.
+    pub fn bind_arguments(
+        &mut self,
+        f: &mut Frame<'a>,
+        head: Head<'a>,
+        dim: Option<&Dim>,
+        given: Vec<Given<'a>>,
+        place: Place,
+    ) -> Option<Bound> {
+        let slots = self.place_arguments(f, head, given, place)?;
+        if slots.iter().flatten().any(|given| matches!(given.wire, Wire::Unknown)) {
+            return None;
+        }
+        let dims = self.bind_dims(f, head, dim, &slots, place)?;
+        let mut bound = Bound { dims, wires: Vec::new(), places: Vec::new() };
+        let mut complete = true;
+        for (input, slot) in head.inputs.iter().zip(slots) {
+            let at = slot.as_ref().map_or(place, |given| given.place);
+            let wire = self.argument(f, head, input, slot, &bound, place);
+            complete &= !matches!(wire, Wire::Unknown);
+            bound.wires.push(wire);
+            bound.places.push(at);
+        }
+        complete.then_some(bound)
+    }
+
+    /// Sorts arguments into the inputs' slots.
+    fn place_arguments(
+        &mut self,
+        f: &mut Frame<'a>,
+        head: Head<'a>,
+        given: Vec<Given<'a>>,
+        place: Place,
+    ) -> Option<Vec<Option<Given<'a>>>> {
+        let mut slots: Vec<Option<Given<'a>>> = vec![None; head.inputs.len()];
+        let mut fine = true;
+        for (i, argument) in given.into_iter().enumerate() {
+            let position = match argument.name {
+                None => Some(i).filter(|i| *i < slots.len()),
+                Some(name) => head.inputs.iter().position(|input| input.name.text == name.text),
+            };
+            let error = match (position, argument.name) {
+                (Some(i), name) if slots[i].is_some() => {
+                    let at = name.map_or(argument.place, |name| self.place(f, name.span));
+                    errors::argument_twice(at, head.name, &head.inputs[i].name.text)
+                }
+                (Some(i), _) => {
+                    slots[i] = Some(argument);
+                    continue;
+                }
+                (None, Some(name)) => {
+                    let near = names::nearest(&name.text, head.inputs.iter().map(|i| i.name.text.as_str()));
+                    errors::unknown_argument(self.place(f, name.span), head.name, &name.text, near)
+                }
+                (None, None) => errors::too_many_arguments(argument.place, head.name, head.inputs.len()),
+            };
+            self.report(f, error);
+            fine = false;
+        }
+        for (input, slot) in head.inputs.iter().zip(&slots) {
+            if fine && slot.is_none() && input.default.is_none() {
+                let ty = types::show(&input.ty);
+                self.report(f, errors::missing_argument(place, head.name, &input.name.text, &ty));
+                fine = false;
+            }
+        }
+        fine.then_some(slots)
+    }
+
+    /// A dimension variable is the widest among the arguments declared with it.
+    fn bind_dims(
+        &mut self,
+        f: &mut Frame<'a>,
+        head: Head<'a>,
+        dim: Option<&Dim>,
+        slots: &[Option<Given<'a>>],
+        place: Place,
+    ) -> Option<Dims> {
+        let mut dims = Dims::new();
+        for (i, variable) in head.dims.iter().enumerate() {
+            let mut width = 1;
+            if let Some(dim) = dim.filter(|_| i == 0) {
+                match types::width_of(Some(dim), &f.dims, place) {
+                    Ok(explicit) => width = explicit,
+                    Err(error) => {
+                        self.report(f, error);
+                        return None;
+                    }
+                }
+            }
+            let mut from = place;
+            for (input, slot) in head.inputs.iter().zip(slots) {
+                let Some(given) = slot.as_ref().filter(|_| types::dimension_variable(&input.ty) == Some(&variable.text))
+                else {
+                    continue;
+                };
+                let found = match given.wire {
+                    Wire::Value(value) => f.builder.ty(value).width(),
+                    _ => continue,
+                };
+                if found > 1 && width > 1 && found != width {
+                    self.report(f, errors::widths_differ(given.place, width, found, from));
+                    return None;
+                }
+                if found > width {
+                    (width, from) = (found, given.place);
+                }
+            }
+            dims.push((variable.text.clone(), width));
+        }
+        Some(dims)
+    }
+
+    /// One input's wire, of its declared type.
+    fn argument(
+        &mut self,
+        f: &mut Frame<'a>,
+        head: Head<'a>,
+        input: &'a Input,
+        slot: Option<Given<'a>>,
+        bound: &Bound,
+        place: Place,
+    ) -> Wire {
+        let declared = match types::resolve(&input.ty, &bound.dims, self.modules[head.module].file) {
+            Ok(declared) => declared,
+            Err(error) => return self.report(f, error),
+        };
+        let given = match (slot, &input.default) {
+            (Some(given), _) => given,
+            (None, Some(default)) => {
+                let wire = self.default(f, head, default, bound);
+                Given { name: None, wire, place, word: None }
+            }
+            (None, None) => return Wire::Unknown,
+        };
+        self.coerce(f, &input.name.text, &declared, given)
+    }
+
+    /// A default is an expression of the callee's file that may read earlier inputs.
+    fn default(
+        &mut self,
+        f: &mut Frame<'a>,
+        head: Head<'a>,
+        default: &'a texgraph_grammar::syntax::Expr,
+        bound: &Bound,
+    ) -> Wire {
+        let earlier = head.inputs.iter().zip(&bound.wires);
+        let scope = earlier.map(|(input, wire)| (input.name.text.as_str(), wire.clone())).collect();
+        let module = std::mem::replace(&mut f.module, head.module);
+        let dims = std::mem::replace(&mut f.dims, bound.dims.clone());
+        let scopes = std::mem::replace(&mut f.scopes, vec![scope]);
+        let wire = self.expr(f, default);
+        (f.module, f.dims, f.scopes) = (module, dims, scopes);
+        wire
+    }
+
+    /// A wire as one of a declared type.
+    pub fn coerce(&mut self, f: &mut Frame<'a>, input: &str, declared: &Declared, given: Given<'a>) -> Wire {
+        let Given { wire, place, word, .. } = given;
+        match (declared, wire) {
+            (_, Wire::Unknown) => Wire::Unknown,
+            (Declared::Vector(scalar, width), wire) => {
+                self.coerce_value(f, &wire, *scalar, *width, place).map_or(Wire::Unknown, Wire::Value)
+            }
+            (Declared::Choice(words), wire) => {
+                let written = match &wire {
+                    Wire::Word(word, _) => Some(word.as_str()),
+                    _ => word,
+                };
+                match written.filter(|word| words.iter().any(|w| w == word)) {
+                    Some(word) => Wire::Word(word.to_owned(), place),
+                    None => self.report(f, errors::unknown_choice(place, input, words)),
+                }
+            }
+            (Declared::Resource(kind), Wire::Resource(resource)) if resource.kind == *kind => Wire::Resource(resource),
+            (Declared::Resource(_), Wire::None) => Wire::None,
+            (Declared::Text, Wire::Text(text)) => Wire::Text(text),
+            (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire,
+            (_, Wire::Word(word, at)) => self.unknown_value(f, &word, at),
+            (declared, wire) => {
+                let found = types::describe(&wire, |v| f.builder.ty(v));
+                let wanted = match declared {
+                    Declared::Resource(kind) => crate::resource::KINDS[*kind].name,
+                    Declared::Text => "a string",
+                    Declared::Texts => "a string or a list of strings",
+                    _ => "a string or a list of lists",
+                };
+                self.report(f, errors::resource_mismatch(place, wanted, &found))
+            }
+        }
+    }
+
+    /// A wire as a single value of any type; None when it is not one (reported) or unknown.
+    pub fn value(&mut self, f: &mut Frame<'a>, wire: &Wire, place: Place) -> Option<Value> {
+        match wire {
+            Wire::Value(value) => return Some(*value),
+            Wire::Unknown => {}
+            Wire::Word(word, at) => {
+                self.unknown_value(f, word, *at);
+            }
+            Wire::Record(outputs) => {
+                let names: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
+                self.report(f, errors::record_as_value(place, &names));
+            }
+            other => {
+                let what = types::describe(other, |v| f.builder.ty(v));
+                self.report(f, errors::not_a_value(place, &format!("`{what}`")));
+            }
+        }
+        None
+    }
+
+    /// A wire as a value of that scalar and width: ints widen, scalars spread.
+    pub fn coerce_value(
+        &mut self,
+        f: &mut Frame<'a>,
+        wire: &Wire,
+        scalar: Scalar,
+        width: u8,
+        place: Place,
+    ) -> Option<Value> {
+        let value = self.value(f, wire, place)?;
+        let ty = f.builder.ty(value);
+        let fits = ty.scalar().is_some_and(|found| types::widens(found, scalar));
+        if !fits || (ty.width() != 1 && ty.width() != width) {
+            let wanted = types::name(Type::Vector(scalar, width));
+            let found = types::name(ty);
+            self.report(f, errors::mismatch(place, &wanted, &found));
+            return None;
+        }
+        f.builder.set_place(place);
+        let value = if scalar == Scalar::Float { f.builder.to_float(value) } else { value };
+        Some(f.builder.splat(value, width))
+    }
+}

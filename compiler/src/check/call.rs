@@ -1,0 +1,512 @@
+//! Calls: which node, intrinsic or constructor a name means, and what calling it gives.
+
+use super::arguments::{Bound, Given, Head};
+use super::types::{self, Declared};
+use super::wire::{ArgumentKey, Key, Wire};
+use super::{Checker, Frame, Outcome};
+use crate::diagnostic::{Place, names, types as errors, unsupported};
+use crate::graph::{Axis, Level, Operation, Scalar, Type, Value};
+use crate::library::Callable;
+use crate::resource::{KINDS, LATER};
+use std::rc::Rc;
+use texgraph_grammar::syntax::{Argument, Call, Expr, ExprKind, ItemKind, Span};
+
+impl<'a> Checker<'a> {
+    /// `name<n>(arguments)`
+    pub(super) fn call(&mut self, f: &mut Frame<'a>, call: &'a Call, span: Span) -> Wire {
+        let place = self.place(f, span);
+        let given = self.given(f, &call.arguments);
+        let candidates = self.callables(f.module, &call.name.text);
+        if candidates.is_empty()
+            && let Some(wire) = self.special(f, call, &given, place)
+        {
+            return wire;
+        }
+        if candidates.is_empty() {
+            return self.no_callable(f, call);
+        }
+        self.call_one_of(f, &candidates, call, given, place)
+    }
+
+    /// `base.name<n>(arguments)`: the base is the first argument.
+    pub(super) fn method(&mut self, f: &mut Frame<'a>, base: Wire, base_place: Place, call: &'a Call, span: Span) -> Wire {
+        let place = self.place(f, span);
+        let arguments = self.given(f, &call.arguments);
+        if let Some(view) = view_of(&base)
+            && let Some(wire) = self.view_method(f, view, call, &arguments, place)
+        {
+            return wire;
+        }
+        let receiver = Given { name: None, wire: base, place: base_place, word: None };
+        let given: Vec<Given<'a>> = std::iter::once(receiver).chain(arguments).collect();
+        let candidates = self.callables(f.module, &call.name.text);
+        if candidates.is_empty() {
+            if let Some(wire) = self.special(f, call, &given, place) {
+                return wire;
+            }
+            return self.no_callable(f, call);
+        }
+        self.call_one_of(f, &candidates, call, given, place)
+    }
+
+    /// A call of an item of an imported file.
+    pub(super) fn imported_call(&mut self, f: &mut Frame<'a>, alias: &str, module: usize, call: &'a Call, span: Span) -> Wire {
+        let place = self.place(f, span);
+        let given = self.given(f, &call.arguments);
+        let candidates = self.own_callables(module, &call.name.text);
+        if candidates.is_empty() {
+            let known = self.modules[module].tree.items.iter().filter_map(super::globals::name_of);
+            let near = names::nearest(&call.name.text, known.map(|name| name.text.as_str()));
+            let at = self.place(f, call.name.span);
+            return self.report(f, crate::diagnostic::imports::no_such_item(at, alias, &call.name.text, near));
+        }
+        self.call_one_of(f, &candidates, call, given, place)
+    }
+
+    fn given(&mut self, f: &mut Frame<'a>, arguments: &'a [Argument]) -> Vec<Given<'a>> {
+        arguments
+            .iter()
+            .map(|argument| Given {
+                name: argument.name.as_ref(),
+                wire: self.expr(f, &argument.value),
+                place: self.place(f, argument.value.span),
+                word: word(&argument.value),
+            })
+            .collect()
+    }
+
+    /// What a name may mean in a file, nearest first.
+    fn callables(&self, module: usize, name: &str) -> Vec<Callable> {
+        let mut found = Vec::new();
+        if module >= self.library.modules().len() {
+            found.extend(self.own_callables(module, name));
+            for import in self.modules[module].imports.iter().filter(|import| import.alias.is_none()) {
+                found.extend(self.own_callables(import.module, name));
+            }
+            if name.starts_with('_') {
+                return found;
+            }
+        }
+        found.extend(self.library.callables(name));
+        found
+    }
+
+    fn own_callables(&self, module: usize, name: &str) -> Vec<Callable> {
+        let items = self.modules[module].tree.items.iter().enumerate();
+        let named = items.filter(|(_, item)| match &item.kind {
+            ItemKind::Node(node) | ItemKind::Texture { node, .. } => node.name.text == name,
+            _ => false,
+        });
+        named.map(|(item, _)| Callable::Node(module, item)).collect()
+    }
+
+    fn head(&self, callable: Callable) -> Option<Head<'a>> {
+        let library: &'a crate::library::Library = self.library;
+        match callable {
+            Callable::Node(module, item) => self.node(module, item).map(|node| Head {
+                name: &node.name.text,
+                dims: &node.dims,
+                inputs: &node.inputs,
+                module,
+            }),
+            Callable::Intrinsic(intrinsic) => library.signature(callable).map(|signature| Head {
+                name: intrinsic.row().name,
+                dims: &signature.dims,
+                inputs: &signature.inputs,
+                module: 0,
+            }),
+            Callable::Constructor(kind) => library.signature(callable).map(|signature| Head {
+                name: KINDS[kind].name,
+                dims: &signature.dims,
+                inputs: &signature.inputs,
+                module: 0,
+            }),
+        }
+    }
+
+    /// Calls the first candidate that takes the arguments; where none does, the one that the user
+    /// most likely meant reports why.
+    pub(super) fn call_one_of(
+        &mut self,
+        f: &mut Frame<'a>,
+        candidates: &[Callable],
+        call: &'a Call,
+        given: Vec<Given<'a>>,
+        place: Place,
+    ) -> Wire {
+        if given.iter().any(|given| matches!(given.wire, Wire::Unknown)) {
+            f.failed |= f.waiting.is_empty();
+            return Wire::Unknown;
+        }
+        let heads: Vec<(Callable, Head<'a>)> =
+            candidates.iter().filter_map(|callable| Some((*callable, self.head(*callable)?))).collect();
+        let fits = |head: &Head<'a>, n: usize| head.inputs.iter().zip(&given).take(n).all(|(i, g)| accepts(f, i, g));
+        let chosen = heads
+            .iter()
+            .find(|(_, head)| given.len() <= head.inputs.len() && fits(head, given.len()))
+            .or_else(|| heads.iter().find(|(_, head)| fits(head, 1)))
+            .copied();
+        match (chosen, heads.as_slice()) {
+            (Some((callable, head)), _) => self.apply(f, callable, head, call, given, place),
+            (None, [(callable, head)]) => self.apply(f, *callable, *head, call, given, place),
+            (None, _) => self.no_receiver(f, &heads, call, &given, place),
+        }
+    }
+
+    fn no_receiver(
+        &mut self,
+        f: &mut Frame<'a>,
+        heads: &[(Callable, Head<'a>)],
+        call: &Call,
+        given: &[Given<'a>],
+        place: Place,
+    ) -> Wire {
+        let first = given.first();
+        if let Some(Wire::Word(word, at)) = first.map(|given| &given.wire) {
+            return self.unknown_value(f, word, *at);
+        }
+        let found = first.map_or_else(|| "nothing".to_owned(), |given| types::describe(&given.wire, |v| f.builder.ty(v)));
+        let accepted = heads.iter().filter_map(|(_, head)| head.inputs.first());
+        let accepted: Vec<String> = accepted.map(|input| format!("`{}`", types::show(&input.ty))).collect();
+        let at = first.map_or(place, |given| given.place);
+        self.report(f, errors::bad_receiver(at, &call.name.text, &found, &accepted))
+    }
+
+    fn apply(
+        &mut self,
+        f: &mut Frame<'a>,
+        callable: Callable,
+        head: Head<'a>,
+        call: &'a Call,
+        given: Vec<Given<'a>>,
+        place: Place,
+    ) -> Wire {
+        let Some(bound) = self.bind_arguments(f, head, call.dim.as_ref(), given, place) else { return Wire::Unknown };
+        f.builder.set_place(place);
+        match callable {
+            Callable::Node(module, item) => self.call_node(f, module, item, bound, place),
+            Callable::Intrinsic(intrinsic) => {
+                let values: Option<Vec<Value>> = bound.wires.iter().map(as_value).collect();
+                values.map_or(Wire::Unknown, |values| Wire::Value(f.builder.builtin(intrinsic, &values)))
+            }
+            Callable::Constructor(kind) => self.construct(f, kind, head, bound, place),
+        }
+    }
+
+    fn call_node(&mut self, f: &mut Frame<'a>, module: usize, item: usize, bound: Bound, place: Place) -> Wire {
+        let mut key = Key { module, item, dims: bound.dims.iter().map(|(_, width)| *width).collect(), arguments: vec![] };
+        let mut arguments = Vec::new();
+        for wire in bound.wires {
+            let argument = match wire {
+                Wire::Value(value) => match f.builder.as_constant(value) {
+                    Some(constant) => ArgumentKey::Constant(constant),
+                    None => {
+                        arguments.push(value);
+                        ArgumentKey::Value(f.builder.ty(value))
+                    }
+                },
+                Wire::Resource(resource) => {
+                    arguments.extend(resource.views.iter().map(|(_, view)| *view));
+                    ArgumentKey::Resource(resource.kind, resource.constants.clone())
+                }
+                Wire::Word(word, _) => ArgumentKey::Word(word),
+                _ => ArgumentKey::None,
+            };
+            key.arguments.push(argument);
+        }
+        match self.made.get(&key) {
+            None => {
+                f.waiting.push((key, place));
+                Wire::Unknown
+            }
+            Some(Outcome::Failed) => {
+                f.failed = true;
+                Wire::Unknown
+            }
+            Some(Outcome::Made(id)) => self.outputs(f, *id, arguments),
+        }
+    }
+
+    fn outputs(&mut self, f: &mut Frame<'a>, id: crate::graph::FunctionId, arguments: Vec<Value>) -> Wire {
+        let callee = &self.functions[id.0 as usize];
+        let known: Vec<_> = callee.outputs.iter().map(|(_, value)| callee.operation(*value)).collect();
+        let outputs = if known.iter().all(|operation| matches!(operation, Operation::Constant(_))) {
+            known.iter().filter_map(|op| if let Operation::Constant(c) = op { Some(f.builder.constant(*c)) } else { None }).collect()
+        } else {
+            f.builder.call(id, callee, arguments)
+        };
+        let names = callee.outputs.iter().map(|(slot, _)| slot.name.clone());
+        let mut record: Vec<(String, Wire)> = names.zip(outputs.into_iter().map(Wire::Value)).collect();
+        if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
+    }
+
+    /// Calls that no row describes: constructors of vectors, `dx`, `dy`, `given`.
+    fn special(&mut self, f: &mut Frame<'a>, call: &'a Call, given: &[Given<'a>], place: Place) -> Option<Wire> {
+        let name = call.name.text.as_str();
+        if let Some((scalar, width)) = types::vector_constructor(name) {
+            return Some(self.vector(f, call, scalar, width, given, place));
+        }
+        match name {
+            "given" => Some(self.is_given(f, given, place)),
+            "dx" | "dy" => Some(self.derivative(f, if name == "dx" { Axis::X } else { Axis::Y }, given, place)),
+            "fold_sprites" | "mat2" | "mat3" => Some(self.not_yet(f, place, name)),
+            _ if LATER.contains(&name) => Some(self.not_yet(f, place, name)),
+            _ => None,
+        }
+    }
+
+    pub(super) fn not_yet(&mut self, f: &mut Frame<'a>, place: Place, name: &str) -> Wire {
+        self.report(f, unsupported::not_yet(place, &format!("`{name}`")))
+    }
+
+    fn is_given(&mut self, f: &mut Frame<'a>, given: &[Given<'a>], place: Place) -> Wire {
+        match given {
+            [one] => {
+                let holds = !matches!(one.wire, Wire::None);
+                Wire::Value(f.builder.constant(crate::graph::Constant::bools(&[holds])))
+            }
+            [] => self.report(f, errors::missing_argument(place, "given", "resource", "resource")),
+            [_, second, ..] => self.report(f, errors::too_many_arguments(second.place, "given", 1)),
+        }
+    }
+
+    fn derivative(&mut self, f: &mut Frame<'a>, axis: Axis, given: &[Given<'a>], place: Place) -> Wire {
+        let [one] = given else {
+            let name = if axis == Axis::X { "dx" } else { "dy" };
+            let error = match given.get(1) {
+                Some(second) => errors::too_many_arguments(second.place, name, 1),
+                None => errors::missing_argument(place, name, "value", "vec<n>"),
+            };
+            return self.report(f, error);
+        };
+        let Some(value) = self.value(f, &one.wire, one.place) else { return Wire::Unknown };
+        let value = f.builder.to_float(value);
+        if !f.builder.ty(value).is_float() {
+            return self.report(f, errors::mismatch(one.place, "float", &types::name(f.builder.ty(value))));
+        }
+        let ty = f.builder.ty(value);
+        Wire::Value(f.builder.push(Operation::Derivative(value, axis), ty))
+    }
+
+    /// `vec3(uv, 0.0)`, `ivec2(-1)`, `int(x)`, `vec<n>(x)`.
+    fn vector(
+        &mut self,
+        f: &mut Frame<'a>,
+        call: &'a Call,
+        scalar: Scalar,
+        width: Option<u8>,
+        given: &[Given<'a>],
+        place: Place,
+    ) -> Wire {
+        let width = match width {
+            Some(width) => width,
+            None => match types::width_of(call.dim.as_ref(), &f.dims, place) {
+                Ok(width) => width,
+                Err(error) => return self.report(f, error),
+            },
+        };
+        let mut parts = Vec::new();
+        for argument in given {
+            let Some(value) = self.value(f, &argument.wire, argument.place) else { return Wire::Unknown };
+            f.builder.set_place(place);
+            let value = match (scalar, f.builder.ty(value).scalar()) {
+                (Scalar::Float, Some(Scalar::Int)) => f.builder.to_float(value),
+                (Scalar::Int, Some(Scalar::Float)) => f.builder.to_int(value),
+                (wanted, Some(found)) if wanted == found => value,
+                _ => {
+                    let (wanted, found) = (types::name(Type::Vector(scalar, 1)), types::name(f.builder.ty(value)));
+                    return self.report(f, errors::mismatch(argument.place, &wanted, &found));
+                }
+            };
+            parts.push(value);
+        }
+        let count: usize = parts.iter().map(|v| usize::from(f.builder.ty(*v).width())).sum();
+        if let [single] = parts.as_slice()
+            && (count == 1 || count == usize::from(width))
+        {
+            return Wire::Value(f.builder.splat(*single, width));
+        }
+        if count != usize::from(width) {
+            return self.report(f, errors::component_count(place, &call.name.text, width, count));
+        }
+        let scalars: Vec<Value> = parts
+            .iter()
+            .flat_map(|v| (0..f.builder.ty(*v).width()).map(|i| (*v, i)))
+            .collect::<Vec<_>>()
+            .into_iter()
+            .map(|(v, i)| f.builder.extract(v, i))
+            .collect();
+        Wire::Value(f.builder.compose(&scalars))
+    }
+
+    /// `sample` and `texel` of a view, or of a resource that stands for one.
+    fn view_method(
+        &mut self,
+        f: &mut Frame<'a>,
+        view: Value,
+        call: &'a Call,
+        given: &[Given<'a>],
+        place: Place,
+    ) -> Option<Wire> {
+        let Type::View(ty) = f.builder.ty(view) else { return None };
+        let name = call.name.text.as_str();
+        let sampled = ty.texel == crate::graph::Texel::Sampled;
+        let inputs: &[&str] = match name {
+            "sample" if sampled => &["at", "layer", "lod", "gradient"],
+            "texel" => &["i", "layer"],
+            "level" if sampled => return Some(self.not_yet(f, place, "level")),
+            _ => return None,
+        };
+        let mut slots: [Option<(Wire, Place)>; 4] = [None, None, None, None];
+        for (i, argument) in given.iter().enumerate() {
+            let position = match argument.name {
+                None => Some(i).filter(|i| *i < 1),
+                Some(written) => inputs.iter().position(|input| *input == written.text),
+            };
+            match position.and_then(|i| slots.get_mut(i)) {
+                Some(slot) if slot.is_none() => *slot = Some((argument.wire.clone(), argument.place)),
+                Some(_) => return Some(self.report(f, errors::argument_twice(argument.place, name, inputs[0]))),
+                None => return Some(self.view_argument_error(f, name, inputs, argument)),
+            }
+        }
+        if slots.iter().flatten().any(|(wire, _)| matches!(wire, Wire::Unknown)) {
+            return Some(Wire::Unknown);
+        }
+        let scalar = if name == "sample" { Scalar::Float } else { Scalar::Int };
+        let Some((at, at_place)) = slots[0].take() else {
+            let wanted = types::name(Type::Vector(scalar, ty.coordinates()));
+            return Some(self.report(f, errors::missing_argument(place, name, inputs[0], &wanted)));
+        };
+        let Some(at) = self.coordinate(f, &at, scalar, ty.coordinates(), at_place) else { return Some(Wire::Unknown) };
+        let Ok(layer) = self.layer(f, ty, slots[1].take(), name, place) else { return Some(Wire::Unknown) };
+        f.builder.set_place(place);
+        if name == "texel" {
+            return Some(Wire::Value(f.builder.texel(view, at, layer)));
+        }
+        let Some(level) = self.level(f, ty, &slots) else { return Some(Wire::Unknown) };
+        f.builder.set_place(place);
+        Some(Wire::Value(f.builder.sample(view, at, layer, level)))
+    }
+
+    fn view_argument_error(&mut self, f: &mut Frame<'a>, name: &str, inputs: &[&str], argument: &Given<'a>) -> Wire {
+        let error = match argument.name {
+            Some(written) => {
+                let near = names::nearest(&written.text, inputs.iter().copied());
+                errors::unknown_argument(self.place(f, written.span), name, &written.text, near)
+            }
+            None => errors::too_many_arguments(argument.place, name, 1),
+        };
+        self.report(f, error)
+    }
+
+    /// A coordinate has as many components as the view; a scalar does not spread here.
+    fn coordinate(&mut self, f: &mut Frame<'a>, wire: &Wire, scalar: Scalar, width: u8, place: Place) -> Option<Value> {
+        let value = self.value(f, wire, place)?;
+        if f.builder.ty(value).width() != width {
+            let (wanted, found) = (types::name(Type::Vector(scalar, width)), types::name(f.builder.ty(value)));
+            self.report(f, errors::mismatch(place, &wanted, &found));
+            return None;
+        }
+        self.coerce_value(f, wire, scalar, width, place)
+    }
+
+    fn layer(
+        &mut self,
+        f: &mut Frame<'a>,
+        ty: crate::graph::View,
+        slot: Option<(Wire, Place)>,
+        name: &str,
+        place: Place,
+    ) -> Result<Option<Value>, ()> {
+        let array = ty.dimension == crate::graph::ViewDimension::D2Array;
+        match slot {
+            Some((_, at)) if !array => {
+                self.report(f, errors::unknown_argument(at, name, "layer", None));
+                Err(())
+            }
+            None if array => {
+                self.report(f, errors::missing_argument(place, name, "layer", "int"));
+                Err(())
+            }
+            Some((wire, at)) => self.coerce_value(f, &wire, Scalar::Int, 1, at).map(Some).ok_or(()),
+            None => Ok(None),
+        }
+    }
+
+    fn level(&mut self, f: &mut Frame<'a>, ty: crate::graph::View, slots: &[Option<(Wire, Place)>; 4]) -> Option<Level> {
+        if let Some((wire, at)) = &slots[2] {
+            return self.coerce_value(f, wire, Scalar::Float, 1, *at).map(Level::Level);
+        }
+        let Some((wire, at)) = &slots[3] else { return Some(Level::Auto) };
+        let value = self.coordinate(f, wire, Scalar::Float, ty.coordinates(), *at)?;
+        let ty = f.builder.ty(value);
+        let x = f.builder.push(Operation::Derivative(value, Axis::X), ty);
+        let y = f.builder.push(Operation::Derivative(value, Axis::Y), ty);
+        Some(Level::Gradient(x, y))
+    }
+
+    fn no_callable(&mut self, f: &mut Frame<'a>, call: &Call) -> Wire {
+        let place = self.place(f, call.name.span);
+        let name = call.name.text.as_str();
+        if self.is_value(f, name) {
+            return self.report(f, names::value_as_node(place, name));
+        }
+        let own = self.modules[f.module].tree.items.iter().filter_map(super::globals::node_of);
+        let own: Vec<&str> = own.map(|node| node.name.text.as_str()).collect();
+        let known = own.into_iter().chain(self.library.callable_names()).chain(SPECIAL.iter().copied());
+        let near = names::nearest(name, known);
+        self.report(f, names::unknown_callable(place, name, near))
+    }
+}
+
+/// What `special` knows, for suggestions.
+const SPECIAL: &[&str] = &["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "dx", "dy", "sample", "texel"];
+
+fn word(expr: &Expr) -> Option<&str> {
+    match &expr.kind {
+        ExprKind::Name(name) => Some(name),
+        _ => None,
+    }
+}
+
+fn as_value(wire: &Wire) -> Option<Value> {
+    match wire {
+        Wire::Value(value) => Some(*value),
+        _ => None,
+    }
+}
+
+/// The view that a wire is, or stands for.
+fn view_of(wire: &Wire) -> Option<Value> {
+    match wire {
+        Wire::View(view) => Some(*view),
+        Wire::Resource(resource) => {
+            let field = KINDS[resource.kind].view?;
+            resource.views.iter().find(|(name, _)| *name == field).map(|(_, view)| *view)
+        }
+        _ => None,
+    }
+}
+
+/// Whether an input may take an argument, as far as that can be told before dimensions are bound.
+fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, given: &Given<'_>) -> bool {
+    if given.name.is_some() {
+        return true;
+    }
+    match (&given.wire, types::scalar_of(&input.ty)) {
+        (Wire::Value(value), Some(wanted)) => {
+            let ty = f.builder.ty(*value);
+            let fixed = types::resolve(&input.ty, &Vec::new(), 0).ok();
+            let width = match fixed {
+                Some(Declared::Vector(_, width)) => ty.width() == 1 || ty.width() == width,
+                _ => true,
+            };
+            width && ty.scalar().is_some_and(|found| types::widens(found, wanted))
+        }
+        (Wire::Resource(resource), None) => {
+            types::resolve(&input.ty, &Vec::new(), 0) == Ok(Declared::Resource(resource.kind))
+        }
+        (Wire::Word(..) | Wire::None | Wire::Text(_) | Wire::List(_), None) => true,
+        _ => false,
+    }
+}

@@ -1,0 +1,129 @@
+//! Constructor calls: arguments that are known become a resource.
+
+use super::arguments::{Bound, Head};
+use super::wire::{ResourceWire, Wire};
+use super::{Checker, Frame};
+use crate::diagnostic::{Diagnostic, Place, constructors};
+use crate::graph::{Constant, ResourceView, Scalar, Type, ViewId};
+use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource};
+use std::rc::Rc;
+
+impl<'a> Checker<'a> {
+    /// Makes the resource of a constructor call, or finds the one made before.
+    pub(super) fn construct(&mut self, f: &mut Frame<'a>, kind: usize, head: Head<'a>, bound: Bound, place: Place) -> Wire {
+        let mut values = Vec::new();
+        for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
+            match argument(f, &input.name.text, wire, *at) {
+                Ok(argument) => values.push((input.name.text.clone(), *at, argument)),
+                Err(diagnostic) => return self.report(f, diagnostic),
+            }
+        }
+        let file = self.modules[f.module].path.clone();
+        match (KINDS[kind].make)(&Arguments { place, file, values }) {
+            Ok(made) => self.resource(f, kind, made, place),
+            Err(diagnostic) => self.report(f, diagnostic),
+        }
+    }
+
+    fn resource(&mut self, f: &mut Frame<'a>, kind: usize, made: Made, place: Place) -> Wire {
+        let known = self.resources.iter().position(|r| r.place == place && r.recipe == made.recipe);
+        let resource = known.unwrap_or_else(|| {
+            let resource = self.resources.len();
+            let mut views = Vec::new();
+            for field in KINDS[kind].fields {
+                if let FieldKind::View(view) = field.kind {
+                    views.push(ViewId(self.views.len() as u32));
+                    self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
+                }
+            }
+            self.resource_wires.push((kind, views, made.constants.clone()));
+            self.resources.push(Resource {
+                name: self.fresh_name(&f.current),
+                label: String::new(),
+                place,
+                recipe: made.recipe,
+                sampler: made.sampler,
+            });
+            resource
+        });
+        self.resource_value(f, resource)
+    }
+
+    /// A name for a resource that stands inside an expression: that of its wire, made unique.
+    fn fresh_name(&self, wish: &str) -> String {
+        let taken = |name: &str| self.resources.iter().any(|r| r.name == name);
+        if !taken(wish) {
+            return wish.to_owned();
+        }
+        (2..).map(|n| format!("{wish}_{n}")).find(|name| !taken(name)).unwrap_or_default()
+    }
+
+    /// A field of a resource.
+    pub(super) fn resource_field(&mut self, f: &mut Frame<'a>, resource: &Rc<ResourceWire>, name: &str) -> Option<Wire> {
+        if let Some((_, constant)) = resource.constants.iter().find(|(field, _)| *field == name) {
+            return Some(Wire::Value(f.builder.constant(*constant)));
+        }
+        if let Some((_, view)) = resource.views.iter().find(|(field, _)| *field == name) {
+            return Some(Wire::View(*view));
+        }
+        let stands_for = KINDS[resource.kind].view?;
+        let (_, view) = resource.views.iter().find(|(field, _)| *field == stands_for)?;
+        view_field(f, *view, name)
+    }
+}
+
+/// A field of a view: its size in texels.
+pub fn view_field(f: &mut Frame<'_>, view: crate::graph::Value, name: &str) -> Option<Wire> {
+    (name == "size" && matches!(f.builder.ty(view), Type::View(_))).then(|| Wire::Value(f.builder.size(view)))
+}
+
+/// A wire as a constructor takes it.
+fn argument(f: &Frame<'_>, input: &str, wire: &Wire, place: Place) -> Result<Argument, Diagnostic> {
+    match wire {
+        Wire::Text(text) => Ok(Argument::Text(text.clone())),
+        Wire::Word(word, _) => Ok(Argument::Word(word.clone())),
+        Wire::Value(value) => match f.builder.as_constant(*value) {
+            Some(constant) => Ok(Argument::Number(constant)),
+            None => Err(constructors::not_known(place, input)),
+        },
+        Wire::List(items) => list(f, input, items, place),
+        _ => Err(constructors::wrong_argument(place, input, "a constant")),
+    }
+}
+
+/// A list of strings, or of rows of ints.
+fn list(f: &Frame<'_>, input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument, Diagnostic> {
+    let mut texts = Vec::new();
+    let mut rows = Vec::new();
+    for (wire, at) in items {
+        match wire {
+            Wire::Text(text) => texts.push(text.clone()),
+            Wire::List(row) => rows.push(ints(f, input, row)?),
+            _ => return Err(constructors::wrong_argument(*at, input, "strings, or rows of ints")),
+        }
+    }
+    match (texts.is_empty(), rows.is_empty()) {
+        (false, true) => Ok(Argument::Texts(texts)),
+        (true, false) => Ok(Argument::Rows(rows)),
+        _ => Err(constructors::wrong_argument(place, input, "strings, or rows of ints")),
+    }
+}
+
+fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, Diagnostic> {
+    row.iter()
+        .map(|(wire, at)| match wire {
+            Wire::Value(value) => match f.builder.as_constant(*value) {
+                Some(c) if c.ty() == Type::Vector(Scalar::Int, 1) => Ok(c.int(0)),
+                Some(_) => Err(constructors::wrong_argument(*at, input, "ints")),
+                None => Err(constructors::not_known(*at, input)),
+            },
+            _ => Err(constructors::wrong_argument(*at, input, "ints")),
+        })
+        .collect()
+}
+
+/// Placeholders for the constants of a resource input, to check a node that nobody calls.
+pub fn placeholder(kind: usize) -> Vec<(&'static str, Constant)> {
+    let constants = KINDS[kind].fields.iter().filter(|field| field.kind == FieldKind::Constant);
+    constants.map(|field| (field.name, Constant::ints(&[16]))).collect()
+}

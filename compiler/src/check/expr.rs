@@ -1,0 +1,403 @@
+//! Expressions: names, operators, fields, choices.
+
+use super::constructor::view_field;
+use super::types;
+use super::wire::Wire;
+use super::{Checker, Frame};
+use crate::diagnostic::{Place, imports, names, rates, types as errors, unsupported};
+use crate::graph::{Constant, Scalar, Type, Value};
+use crate::intrinsic::{COMPONENT, Intrinsic, NEGATE, NEGATE_INT, NOT};
+use crate::library::Callable;
+use std::rc::Rc;
+use texgraph_grammar::syntax::{BinaryOperator, ChainLink, Expr, ExprKind, Name, Postfix, Span, UnaryOperator};
+
+impl<'a> Checker<'a> {
+    /// What an expression gives. Recursion is bounded by the nesting of the text.
+    pub(super) fn expr(&mut self, f: &mut Frame<'a>, e: &'a Expr) -> Wire {
+        let place = self.place(f, e.span);
+        f.builder.set_place(place);
+        match &e.kind {
+            ExprKind::Int(value) => match value.and_then(|v| i32::try_from(v).ok()) {
+                Some(int) => Wire::Value(f.builder.constant(Constant::ints(&[int]))),
+                None => self.report(f, errors::int_too_large(place)),
+            },
+            ExprKind::Float(value) if (*value as f32).is_finite() => {
+                Wire::Value(f.builder.constant(Constant::floats(&[*value as f32])))
+            }
+            ExprKind::Float(_) => self.report(f, errors::float_too_large(place)),
+            ExprKind::Bool(value) => Wire::Value(f.builder.constant(Constant::bools(&[*value]))),
+            ExprKind::Color(channels) => Wire::Value(f.builder.constant(color(*channels))),
+            ExprKind::Text(text) => Wire::Text(text.clone()),
+            ExprKind::Name(name) => self.name(f, name, place),
+            ExprKind::Paren(inner) => self.expr(f, inner),
+            ExprKind::Call(call) => self.call(f, call, e.span),
+            ExprKind::Postfix { base, links } => self.postfix(f, base, links),
+            ExprKind::Unary { operators, operand } => self.unary(f, operators, operand, e.span),
+            ExprKind::Chain { first, links } => self.chain(f, first, links),
+            ExprKind::If { arms, otherwise } => self.choice(f, arms, otherwise),
+            ExprKind::List(items) => {
+                let items = items.iter().map(|item| (self.expr(f, item), self.place(f, item.span))).collect();
+                Wire::List(Rc::new(items))
+            }
+            ExprKind::Lambda { .. } => self.report(f, unsupported::not_yet(place, "lambdas")),
+            ExprKind::Fold(fold) => self.fold(f, fold, e.span),
+        }
+    }
+
+    /// A name: a wire of the function, or a value of the file. One that is neither may still be a
+    /// choice; who needs a value reports it.
+    fn name(&mut self, f: &mut Frame<'a>, name: &str, place: Place) -> Wire {
+        if let Some(wire) = f.scopes.iter().rev().find_map(|scope| scope.get(name)) {
+            return wire.clone();
+        }
+        if f.bound.contains(name) {
+            // Bound in this body but not made: part of a ring, or wrong; both are reported.
+            f.failed = true;
+            return Wire::Unknown;
+        }
+        match self.global(f.module, name) {
+            Some(global) => self.global_wire(f, global),
+            None if name == "none" => Wire::None,
+            None => Wire::Word(name.to_owned(), place),
+        }
+    }
+
+    pub(super) fn is_value(&self, f: &Frame<'a>, name: &str) -> bool {
+        f.scopes.iter().any(|scope| scope.contains_key(name)) || self.global(f.module, name).is_some()
+    }
+
+    /// Reports a name that is no value.
+    pub(super) fn unknown_value(&mut self, f: &mut Frame<'a>, name: &str, place: Place) -> Wire {
+        if self.alias(f.module, name).is_some() {
+            return self.report(f, names::alias_as_value(place, name));
+        }
+        let module = &self.modules[f.module];
+        if module.tree.items.iter().filter_map(super::globals::node_of).any(|node| node.name.text == name)
+            || !self.library.callables(name).is_empty()
+        {
+            return self.report(f, names::node_as_value(place, name));
+        }
+        let near = {
+            let scoped = f.scopes.iter().flat_map(|scope| scope.keys().copied());
+            let later = f.steps.iter().flat_map(super::Step::names);
+            let items = self.globals[f.module].keys().map(String::as_str);
+            let mut known: Vec<&str> = scoped.chain(later).chain(items).collect();
+            known.sort_unstable();
+            names::nearest(name, known)
+        };
+        self.report(f, names::unknown_value(place, name, near))
+    }
+
+    /// The module that an alias names.
+    fn alias(&self, module: usize, name: &str) -> Option<usize> {
+        let mut imports = self.modules[module].imports.iter();
+        imports.find(|import| import.alias.as_ref().is_some_and(|alias| alias.text == name)).map(|i| i.module)
+    }
+
+    fn postfix(&mut self, f: &mut Frame<'a>, base: &'a Expr, links: &'a [Postfix]) -> Wire {
+        let mut links = links.iter();
+        let mut place = self.place(f, base.span);
+        let mut wire = match (&base.kind, self.alias_of(f, base)) {
+            (ExprKind::Name(alias), Some(module)) => match links.next() {
+                Some(Postfix::Field(name)) => self.imported_value(f, alias, module, name),
+                Some(Postfix::Method(call, span)) => self.imported_call(f, alias, module, call, *span),
+                _ => self.report(f, names::alias_as_value(place, alias)),
+            },
+            _ => self.expr(f, base),
+        };
+        for link in links {
+            // A word that something is asked of is a name that nobody declared.
+            if let Wire::Word(word, at) = &wire {
+                wire = self.unknown_value(f, &word.clone(), *at);
+            }
+            wire = match link {
+                Postfix::Field(name) => self.field(f, wire, name),
+                Postfix::Method(call, span) => self.method(f, wire, place, call, *span),
+                Postfix::Index(index, span) => self.index(f, wire, index, *span),
+            };
+            let end = match link {
+                Postfix::Field(name) => name.span,
+                Postfix::Method(_, span) | Postfix::Index(_, span) => *span,
+            };
+            place.span = place.span.to(end);
+        }
+        wire
+    }
+
+    fn alias_of(&self, f: &Frame<'a>, base: &Expr) -> Option<usize> {
+        match &base.kind {
+            ExprKind::Name(name) if !self.is_value(f, name) => self.alias(f.module, name),
+            _ => None,
+        }
+    }
+
+    fn imported_value(&mut self, f: &mut Frame<'a>, alias: &str, module: usize, name: &Name) -> Wire {
+        if let Some(global) = self.globals[module].get(&name.text).copied() {
+            return self.global_wire(f, global);
+        }
+        let place = self.place(f, name.span);
+        let known = self.modules[module].tree.items.iter().filter_map(super::globals::name_of);
+        let near = names::nearest(&name.text, known.map(|n| n.text.as_str()));
+        self.report(f, imports::no_such_item(place, alias, &name.text, near))
+    }
+
+    fn field(&mut self, f: &mut Frame<'a>, wire: Wire, name: &Name) -> Wire {
+        let place = self.place(f, name.span);
+        f.builder.set_place(place);
+        match &wire {
+            Wire::Unknown => Wire::Unknown,
+            Wire::Record(outputs) => match outputs.iter().find(|(output, _)| *output == name.text) {
+                Some((_, wire)) => wire.clone(),
+                None => {
+                    let near = names::nearest(&name.text, outputs.iter().map(|(output, _)| output.as_str()));
+                    self.report(f, names::unknown_field(place, "this record", &name.text, near))
+                }
+            },
+            Wire::Resource(resource) => match self.resource_field(f, resource, &name.text) {
+                Some(wire) => wire,
+                None => self.unknown_resource_field(f, resource.kind, name, place),
+            },
+            Wire::View(view) => match view_field(f, *view, &name.text) {
+                Some(wire) => wire,
+                None => self.report(f, names::unknown_field(place, "a view", &name.text, None)),
+            },
+            Wire::Value(value) => self.swizzle(f, *value, name, place),
+            other => {
+                let what = types::describe(other, |v| f.builder.ty(v));
+                self.report(f, names::unknown_field(place, &format!("a {what}"), &name.text, None))
+            }
+        }
+    }
+
+    fn unknown_resource_field(&mut self, f: &mut Frame<'a>, kind: usize, name: &Name, place: Place) -> Wire {
+        let kind = &crate::resource::KINDS[kind];
+        let near = names::nearest(&name.text, kind.fields.iter().map(|field| field.name));
+        self.report(f, names::unknown_field(place, &format!("`{}`", kind.name), &name.text, near))
+    }
+
+    /// `.xyzw` or `.rgba`, one to four of the components there are.
+    fn swizzle(&mut self, f: &mut Frame<'a>, value: Value, name: &Name, place: Place) -> Wire {
+        let width = f.builder.ty(value).width();
+        let components = ["xyzw", "rgba"].iter().find_map(|set| {
+            name.text.chars().map(|c| set.find(c)).collect::<Option<Vec<usize>>>().filter(|found| found.len() <= 4)
+        });
+        let components = components.filter(|found| found.iter().all(|i| *i < usize::from(width)));
+        let Some(components) = components else {
+            let ty = types::name(f.builder.ty(value));
+            return self.report(f, errors::bad_swizzle(place, &ty, &name.text));
+        };
+        let scalars: Vec<Value> = components.into_iter().map(|i| f.builder.extract(value, i as u8)).collect();
+        Wire::Value(f.builder.compose(&scalars))
+    }
+
+    /// `v[i]`: a component, the index clamped.
+    fn index(&mut self, f: &mut Frame<'a>, wire: Wire, index: &'a Expr, span: Span) -> Wire {
+        let place = self.place(f, span);
+        let at = self.place(f, index.span);
+        let index = self.expr(f, index);
+        if let Wire::List(_) = wire {
+            return self.report(f, unsupported::not_yet(place, "constant tables"));
+        }
+        let vector = self.value(f, &wire, place);
+        let Some(index) = self.coerce_value(f, &index, Scalar::Int, 1, at) else { return Wire::Unknown };
+        let Some(vector) = vector else { return Wire::Unknown };
+        f.builder.set_place(place);
+        let width = f.builder.ty(vector).width();
+        if let Some(known) = f.builder.as_constant(index) {
+            let component = known.int(0).clamp(0, i32::from(width) - 1);
+            return Wire::Value(f.builder.extract(vector, component as u8));
+        }
+        Wire::Value(f.builder.builtin(COMPONENT, &[vector, index]))
+    }
+
+    fn unary(&mut self, f: &mut Frame<'a>, operators: &[(UnaryOperator, Span)], operand: &'a Expr, span: Span) -> Wire {
+        // The least int has no positive counterpart, so its literal only works with its sign.
+        if let (ExprKind::Int(Some(2_147_483_648)), [.., (UnaryOperator::Negate, _)]) = (&operand.kind, operators) {
+            let least = f.builder.constant(Constant::ints(&[i32::MIN]));
+            return self.prefix(f, &operators[..operators.len() - 1], least, span);
+        }
+        let wire = self.expr(f, operand);
+        let place = self.place(f, operand.span);
+        match self.value(f, &wire, place) {
+            Some(value) => self.prefix(f, operators, value, span),
+            None => Wire::Unknown,
+        }
+    }
+
+    fn prefix(&mut self, f: &mut Frame<'a>, operators: &[(UnaryOperator, Span)], mut value: Value, span: Span) -> Wire {
+        let place = self.place(f, span);
+        f.builder.set_place(place);
+        for (operator, _) in operators.iter().rev() {
+            let intrinsic = match (operator, f.builder.ty(value)) {
+                (UnaryOperator::Negate, Type::Vector(Scalar::Int, _)) => NEGATE_INT,
+                (UnaryOperator::Negate, Type::Vector(Scalar::Float, _)) => NEGATE,
+                (UnaryOperator::Not, Type::Vector(Scalar::Bool, 1)) => NOT,
+                (operator, ty) => {
+                    let wanted = if *operator == UnaryOperator::Not { "bool" } else { "float" };
+                    return self.report(f, errors::mismatch(place, wanted, &types::name(ty)));
+                }
+            };
+            value = f.builder.builtin(intrinsic, &[value]);
+        }
+        Wire::Value(value)
+    }
+
+    fn chain(&mut self, f: &mut Frame<'a>, first: &'a Expr, links: &'a [ChainLink]) -> Wire {
+        let start = self.place(f, first.span);
+        let left = self.expr(f, first);
+        let mut left = self.value(f, &left, start);
+        let mut place = start;
+        for link in links {
+            let right_place = self.place(f, link.operand.span);
+            let right = self.expr(f, &link.operand);
+            let right = self.value(f, &right, right_place);
+            let whole = Place { span: place.span.to(link.operand.span), ..place };
+            left = match (left, right) {
+                (Some(a), Some(b)) => self.operator(f, link, (a, place), (b, right_place), whole),
+                _ => None,
+            };
+            place = whole;
+        }
+        left.map_or(Wire::Unknown, Wire::Value)
+    }
+
+    /// An operator: the first overload that takes both operands without narrowing.
+    fn operator(
+        &mut self,
+        f: &mut Frame<'a>,
+        link: &ChainLink,
+        (a, a_place): (Value, Place),
+        (b, b_place): (Value, Place),
+        whole: Place,
+    ) -> Option<Value> {
+        let (left, right) = (f.builder.ty(a), f.builder.ty(b));
+        let Some((intrinsic, scalar)) = self.overload(link.operator, left, right) else {
+            let found = [types::name(left), types::name(right)];
+            let accepted = self.accepted(link.operator);
+            let at = self.place(f, link.operator_span);
+            let mut diagnostic = errors::no_overload(at, link.operator.symbol(), &found, &accepted);
+            diagnostic = diagnostic.related(a_place, format!("`{}`", found[0])).related(b_place, format!("`{}`", found[1]));
+            self.report(f, diagnostic);
+            return None;
+        };
+        let scalars_only = link.operator.precedence() == 3
+            && !matches!(link.operator, BinaryOperator::Equal | BinaryOperator::NotEqual);
+        for (ty, place) in [(left, a_place), (right, b_place)] {
+            if scalars_only && ty.width() > 1 {
+                self.report(f, errors::not_a_scalar(place, &types::name(ty)));
+                return None;
+            }
+        }
+        let width = left.width().max(right.width());
+        if left.width() != right.width() && left.width() > 1 && right.width() > 1 {
+            self.report(f, errors::widths_differ(b_place, left.width(), right.width(), a_place));
+            return None;
+        }
+        f.builder.set_place(whole);
+        let mut operands = [a, b];
+        for value in &mut operands {
+            if scalar == Scalar::Float {
+                *value = f.builder.to_float(*value);
+            }
+            *value = f.builder.splat(*value, width);
+        }
+        Some(f.builder.builtin(intrinsic, &operands))
+    }
+
+    /// The row of an operator for operands of these types, and the scalar that it takes.
+    fn overload(&self, operator: BinaryOperator, left: Type, right: Type) -> Option<(Intrinsic, Scalar)> {
+        self.library.callables(operator.symbol()).iter().find_map(|callable| {
+            let Callable::Intrinsic(intrinsic) = callable else { return None };
+            let first = self.library.signature(*callable)?.inputs.first()?;
+            let scalar = types::scalar_of(&first.ty)?;
+            let fits = |ty: Type| ty.scalar().is_some_and(|found| types::widens(found, scalar));
+            (fits(left) && fits(right)).then_some((*intrinsic, scalar))
+        })
+    }
+
+    fn accepted(&self, operator: BinaryOperator) -> Vec<String> {
+        let signatures = self.library.callables(operator.symbol()).iter().filter_map(|c| self.library.signature(*c));
+        let mut accepted: Vec<String> = signatures
+            .filter_map(|signature| {
+                let first = signature.inputs.first()?;
+                Some(match types::scalar_of(&first.ty)? {
+                    Scalar::Float => "floats".to_owned(),
+                    Scalar::Int => "ints".to_owned(),
+                    Scalar::Bool => "bools".to_owned(),
+                })
+            })
+            .collect();
+        accepted.dedup();
+        accepted
+    }
+
+    fn choice(&mut self, f: &mut Frame<'a>, arms: &'a [(Expr, Expr)], otherwise: &'a Expr) -> Wire {
+        let mut conditions = Vec::new();
+        let mut chosen = Vec::new();
+        let mut last = Some(otherwise);
+        for (condition, arm) in arms {
+            let place = self.place(f, condition.span);
+            let wire = self.expr(f, condition);
+            let value = self.coerce_value(f, &wire, Scalar::Bool, 1, place);
+            match value.and_then(|value| f.builder.as_constant(value)) {
+                // A known condition leaves one arm; the other is not even looked at.
+                Some(known) if known.bool(0) => {
+                    last = Some(arm);
+                    break;
+                }
+                Some(_) => continue,
+                None => {}
+            }
+            conditions.push((value, place));
+            chosen.push((self.expr(f, arm), self.place(f, arm.span)));
+        }
+        if let Some(arm) = last.take() {
+            chosen.push((self.expr(f, arm), self.place(f, arm.span)));
+        }
+        self.select(f, &conditions, chosen)
+    }
+
+    /// Nested choices from the arms, the last one unconditional.
+    fn select(&mut self, f: &mut Frame<'a>, conditions: &[(Option<Value>, Place)], arms: Vec<(Wire, Place)>) -> Wire {
+        if let ([], [(only, _)]) = (conditions, arms.as_slice()) {
+            return only.clone();
+        }
+        if arms.iter().any(|(wire, _)| matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::Text(_) | Wire::None)) {
+            let place = conditions.first().map_or(Place::default(), |(_, place)| *place);
+            return self.report(f, rates::choice_not_constant(place));
+        }
+        let values: Vec<Option<Value>> = arms.iter().map(|(wire, place)| self.value(f, wire, *place)).collect();
+        let Some(values) = values.into_iter().collect::<Option<Vec<Value>>>() else { return Wire::Unknown };
+        let Some(values) = self.common_type(f, values, &arms) else { return Wire::Unknown };
+        let mut values = values.into_iter().rev();
+        let Some(mut result) = values.next() else { return Wire::Unknown };
+        for ((condition, _), value) in conditions.iter().rev().zip(values) {
+            let Some(condition) = condition else { return Wire::Unknown };
+            result = f.builder.select(*condition, value, result);
+        }
+        Wire::Value(result)
+    }
+
+    /// Arms widen to a common type.
+    fn common_type(&mut self, f: &mut Frame<'a>, values: Vec<Value>, arms: &[(Wire, Place)]) -> Option<Vec<Value>> {
+        let all = || values.iter().map(|value| f.builder.ty(*value));
+        let scalar = if all().any(Type::is_float) { Scalar::Float } else { all().next()?.scalar()? };
+        let width = all().map(Type::width).max()?;
+        let mut common = Vec::new();
+        for (value, (_, place)) in values.into_iter().zip(arms) {
+            common.push(self.coerce_value(f, &Wire::Value(value), scalar, width, *place)?);
+        }
+        Some(common)
+    }
+}
+
+/// An sRGB colour as people write it, linear and premultiplied.
+fn color([r, g, b, a]: [u8; 4]) -> Constant {
+    let alpha = f32::from(a) / 255.0;
+    let linear = |channel: u8| {
+        let c = f32::from(channel) / 255.0;
+        let linear = if c <= 0.040_45 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) };
+        linear * alpha
+    };
+    Constant::floats(&[linear(r), linear(g), linear(b), alpha])
+}

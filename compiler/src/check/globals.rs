@@ -1,0 +1,315 @@
+//! What a file declares: its constants, resources and params, and which names reach where.
+
+use super::order::Reach;
+use super::wire::Wire;
+use super::{Checker, Frame, Step, Target, types};
+use crate::diagnostic::{Place, imports, names, rates, types as type_errors};
+use crate::graph::{Builder, Constant, Param, ParamId, Scalar, Type};
+use crate::module::Module;
+use rustc_hash::FxHashMap;
+use texgraph_grammar::syntax::{Expr, Item, ItemKind, Name, Node, Range, Span};
+
+/// A value that a file declares.
+#[derive(Clone, Copy, Debug)]
+pub enum Global {
+    /// A number.
+    Constant(Constant),
+    /// Index of a resource.
+    Resource(usize),
+    /// A param.
+    Param(ParamId),
+    /// Wrong, and reported.
+    Unknown,
+}
+
+/// What a call of a file's own nodes may read.
+pub fn reach(module: &Module) -> Reach<'_> {
+    Reach::new(module.tree.items.iter().filter_map(node_of))
+}
+
+/// The node or texture that an item declares.
+pub fn node_of(item: &Item) -> Option<&Node> {
+    match &item.kind {
+        ItemKind::Node(node) | ItemKind::Texture { node, .. } => Some(node),
+        _ => None,
+    }
+}
+
+/// The name that an item declares.
+pub fn name_of(item: &Item) -> Option<&Name> {
+    match &item.kind {
+        ItemKind::Let { name, .. } | ItemKind::Param { name, .. } => Some(name),
+        ItemKind::Node(node) | ItemKind::Texture { node, .. } => Some(&node.name),
+        ItemKind::Use { .. } => None,
+    }
+}
+
+/// The prefix of each module's params (`stone.`), by the first chain of aliases in source order
+/// that leads to it from the main file, which is the last.
+pub fn aliases(modules: &[Module], library: usize) -> Vec<String> {
+    let mut prefixes: Vec<Option<String>> = vec![None; modules.len()];
+    let mut stack = if modules.len() > library { vec![(modules.len() - 1, String::new())] } else { Vec::new() };
+    while let Some((module, prefix)) = stack.pop() {
+        if prefixes[module].is_some() {
+            continue;
+        }
+        for import in modules[module].imports.iter().rev() {
+            let alias = import.alias.as_ref().map_or(String::new(), |alias| format!("{}.", alias.text));
+            stack.push((import.module, format!("{prefix}{alias}")));
+        }
+        prefixes[module] = Some(prefix);
+    }
+    prefixes.into_iter().map(Option::unwrap_or_default).collect()
+}
+
+impl<'a> Checker<'a> {
+    /// Evaluates the `let`s and params of every file.
+    pub fn declare(&mut self) {
+        for module in 0..self.modules.len() {
+            self.check_items(module);
+            let mut f = Frame::empty();
+            f.module = module;
+            f.builder = Builder::new(self.modules[module].path.clone());
+            for item in &self.modules[module].tree.items {
+                match &item.kind {
+                    ItemKind::Let { name, value } => {
+                        f.steps.push(Step { target: Target::Global(name, &item.doc), value });
+                    }
+                    ItemKind::Param { default, .. } => {
+                        f.steps.push(Step { target: Target::Param(item), value: default });
+                    }
+                    _ => {}
+                }
+            }
+            self.sort(&mut f);
+            self.run(f);
+        }
+    }
+
+    /// Names declared twice: in the file, by two imports, or as two aliases.
+    fn check_items(&mut self, module: usize) {
+        let m = &self.modules[module];
+        let place = |span: Span| Place { file: m.file, span };
+        let mut seen: FxHashMap<(&str, &str), &Name> = FxHashMap::default();
+        for item in &m.tree.items {
+            let Some(name) = name_of(item) else { continue };
+            if let Some(first) = seen.insert((&name.text, overload_of(item)), name) {
+                let diagnostic = names::bound_twice(place(name.span), &name.text, place(first.span));
+                self.diagnostics.push(diagnostic);
+            }
+        }
+        let mut aliases: FxHashMap<&str, ()> = FxHashMap::default();
+        for alias in m.imports.iter().filter_map(|import| import.alias.as_ref()) {
+            if aliases.insert(&alias.text, ()).is_some() {
+                self.diagnostics.push(imports::alias_twice(place(alias.span), &alias.text));
+            }
+        }
+        self.check_joined(module);
+    }
+
+    /// Items of unnamed imports join the file's: two of one name clash, at the later `use`.
+    fn check_joined(&mut self, module: usize) {
+        let m = &self.modules[module];
+        let mut seen: FxHashMap<(&str, &str), Place> = FxHashMap::default();
+        for import in m.imports.iter().filter(|import| import.alias.is_none()) {
+            let other = &self.modules[import.module];
+            for item in &other.tree.items {
+                let Some(name) = name_of(item) else { continue };
+                let here = Place { file: other.file, span: name.span };
+                let key = (name.text.as_str(), overload_of(item));
+                if let Some(first) = seen.insert(key, here).filter(|first| *first != here) {
+                    let place = Place { file: m.file, span: import.span };
+                    self.diagnostics.push(imports::clash(place, &name.text, first));
+                }
+            }
+        }
+        for item in &m.tree.items {
+            let Some(name) = name_of(item) else { continue };
+            if let Some(first) = seen.get(&(name.text.as_str(), overload_of(item))) {
+                let place = Place { file: m.file, span: name.span };
+                self.diagnostics.push(imports::clash(place, &name.text, *first));
+            }
+        }
+    }
+
+    /// A value of a file, or of a file that joins it.
+    pub fn global(&self, module: usize, name: &str) -> Option<Global> {
+        self.globals[module].get(name).copied().or_else(|| {
+            let joined = self.modules[module].imports.iter().filter(|import| import.alias.is_none());
+            joined.filter_map(|import| self.globals[import.module].get(name).copied()).next()
+        })
+    }
+
+    /// A global as a wire of the function being made.
+    pub fn global_wire(&self, f: &mut Frame<'a>, global: Global) -> Wire {
+        match global {
+            Global::Constant(constant) => Wire::Value(f.builder.constant(constant)),
+            Global::Resource(resource) => self.resource_value(f, resource),
+            Global::Param(id) => self.param_value(f, id),
+            Global::Unknown => Wire::Unknown,
+        }
+    }
+
+    pub(super) fn set_global(&mut self, f: &mut Frame<'a>, name: &'a Name, doc: &str, wire: Wire, place: Place) {
+        let global = match &wire {
+            Wire::Value(value) => match f.builder.as_constant(*value) {
+                Some(constant) => Global::Constant(constant),
+                None => {
+                    self.report(f, rates::let_not_constant(place, &name.text));
+                    Global::Unknown
+                }
+            },
+            Wire::Resource(resource) => self.resource_of(f, resource).map_or(Global::Unknown, |id| {
+                self.resources[id].name = format!("{}{}", self.aliases[f.module], name.text);
+                doc.clone_into(&mut self.resources[id].label);
+                Global::Resource(id)
+            }),
+            Wire::Unknown => Global::Unknown,
+            Wire::Word(word, at) => {
+                self.unknown_value(f, word, *at);
+                Global::Unknown
+            }
+            other => {
+                let what = types::describe(other, |v| f.builder.ty(v));
+                self.report(f, type_errors::not_a_value(place, &format!("a {what}")));
+                Global::Unknown
+            }
+        };
+        self.globals[f.module].insert(name.text.clone(), global);
+        let wire = self.global_wire(f, global);
+        self.bind(f, name, wire);
+    }
+
+    /// Which resource a wire of this frame shows.
+    fn resource_of(&self, f: &Frame<'a>, wire: &super::ResourceWire) -> Option<usize> {
+        let (_, value) = wire.views.first()?;
+        match f.builder.operation(*value) {
+            crate::graph::Operation::View(id) => self.views.get(id.0 as usize).map(|view| view.resource as usize),
+            _ => None,
+        }
+    }
+
+    pub(super) fn set_param(&mut self, f: &mut Frame<'a>, item: &'a Item, wire: Wire, place: Place) {
+        let ItemKind::Param { name, ty, default, range } = &item.kind else { return };
+        let global = match self.param(f, item, name, ty, default, range.as_ref(), wire, place) {
+            Some(param) => {
+                self.params.push(param);
+                Global::Param(ParamId(self.params.len() as u32 - 1))
+            }
+            None => Global::Unknown,
+        };
+        self.globals[f.module].insert(name.text.clone(), global);
+        let wire = self.global_wire(f, global);
+        self.bind(f, name, wire);
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the parts of one declaration")]
+    fn param(
+        &mut self,
+        f: &mut Frame<'a>,
+        item: &Item,
+        name: &Name,
+        ty: &texgraph_grammar::syntax::Type,
+        default: &Expr,
+        range: Option<&'a Range>,
+        wire: Wire,
+        place: Place,
+    ) -> Option<Param> {
+        let (scalar, width) = match types::resolve(ty, &f.dims, self.modules[f.module].file) {
+            Ok(types::Declared::Vector(scalar, width)) => (scalar, width),
+            Ok(_) => {
+                let at = self.place(f, ty.span);
+                self.report(f, type_errors::type_not_allowed(at, &types::show(ty), "a param"));
+                return None;
+            }
+            Err(diagnostic) => {
+                self.report(f, diagnostic);
+                return None;
+            }
+        };
+        let value = self.known(f, name, &wire, scalar, width, place)?;
+        let range = match range {
+            Some(range) => Some(self.range(f, name, range, scalar, width)?),
+            None => None,
+        };
+        if let Some((low, high)) = range
+            && !within(&value, &low, &high)
+        {
+            let all = self.place(f, default.span);
+            self.report(f, rates::default_outside_range(all, &name.text, all));
+            return None;
+        }
+        Some(Param {
+            name: format!("{}{}", self.aliases[f.module], name.text),
+            label: item.doc.clone(),
+            ty: Type::Vector(scalar, width),
+            default: value,
+            range,
+        })
+    }
+
+    fn range(
+        &mut self,
+        f: &mut Frame<'a>,
+        name: &Name,
+        range: &'a Range,
+        scalar: Scalar,
+        width: u8,
+    ) -> Option<(Constant, Constant)> {
+        let mut ends = Vec::new();
+        for end in [&*range.start, &*range.end] {
+            let wire = self.expr(f, end);
+            let place = self.place(f, end.span);
+            ends.push(self.known(f, name, &wire, scalar, width, place)?);
+        }
+        let (low, mut high) = (ends[0], ends[1]);
+        if !range.inclusive && scalar == Scalar::Int {
+            high = Constant::ints(&(0..usize::from(width)).map(|i| high.int(i).wrapping_sub(1)).collect::<Vec<_>>());
+        }
+        if !within(&low, &low, &high) {
+            let place = self.place(f, range.span);
+            self.report(f, rates::empty_range(place, &name.text));
+            return None;
+        }
+        Some((low, high))
+    }
+
+    /// A constant of that type.
+    fn known(
+        &mut self,
+        f: &mut Frame<'a>,
+        name: &Name,
+        wire: &Wire,
+        scalar: Scalar,
+        width: u8,
+        place: Place,
+    ) -> Option<Constant> {
+        let value = self.coerce_value(f, wire, scalar, width, place)?;
+        let constant = f.builder.as_constant(value);
+        if constant.is_none() {
+            self.report(f, rates::param_not_constant(place, &name.text));
+        }
+        constant
+    }
+}
+
+/// Nodes may share a name when their first inputs are of different resource kinds.
+fn overload_of(item: &Item) -> &str {
+    let first = node_of(item).and_then(|node| node.inputs.first());
+    match first.map(|input| &input.ty.kind) {
+        Some(texgraph_grammar::syntax::TypeKind::Named { name, .. })
+            if crate::resource::KINDS.iter().any(|kind| kind.name == name.text)
+                || crate::resource::LATER.contains(&name.text.as_str()) =>
+        {
+            &name.text
+        }
+        _ => "",
+    }
+}
+
+fn within(value: &Constant, low: &Constant, high: &Constant) -> bool {
+    (0..usize::from(value.width())).all(|i| match value.scalar() {
+        Scalar::Float => value.float(i) >= low.float(i) && value.float(i) <= high.float(i),
+        Scalar::Int | Scalar::Bool => value.int(i) >= low.int(i) && value.int(i) <= high.int(i),
+    })
+}

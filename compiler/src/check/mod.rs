@@ -1,0 +1,543 @@
+//! Checking: the syntax tree becomes typed functions.
+//!
+//! A node is made once for every combination of dimensions and constant arguments that it is
+//! called with (a [`wire::Key`]). Making a function runs its statements in an order that works;
+//! a statement that calls a node which is not made yet *waits*: the node is put on an explicit
+//! stack, made, and the statement runs again. Values are hash-consed, so running it again adds
+//! nothing. Nothing here recurses deeper than the nesting of one expression.
+
+mod arguments;
+mod call;
+mod constructor;
+mod expr;
+mod fold;
+mod globals;
+mod order;
+mod texture;
+mod types;
+mod wire;
+
+pub use texture::textures;
+
+use crate::diagnostic::{Diagnostic, Place, limits, names, types as type_errors};
+use crate::graph::{Builder, Function, FunctionId, Graph, Param, ParamId, ResourceView, Type, ViewId};
+use crate::library::Library;
+use crate::module::Module;
+use crate::resource::{FieldKind, KINDS, Resource};
+use globals::Global;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
+use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span, Statement};
+use types::{Declared, Dims};
+use wire::{ArgumentKey, Key, ResourceWire, Wire};
+
+/// What a made node is.
+#[derive(Clone, Copy)]
+enum Outcome {
+    Made(FunctionId),
+    /// Wrong, and reported.
+    Failed,
+}
+
+/// Everything known while checking a program.
+pub struct Checker<'a> {
+    library: &'a Library,
+    modules: &'a [Module],
+    globals: Vec<FxHashMap<String, Global>>,
+    aliases: Vec<String>,
+    made: FxHashMap<Key, Outcome>,
+    interned: FxHashMap<u64, Vec<FunctionId>>,
+    functions: Vec<Function>,
+    params: Vec<Param>,
+    resources: Vec<Resource>,
+    resource_wires: Vec<(usize, Vec<ViewId>, Vec<(&'static str, crate::graph::Constant)>)>,
+    views: Vec<ResourceView>,
+    diagnostics: Vec<Diagnostic>,
+    /// The limit on nodes was reported.
+    full: bool,
+}
+
+/// One thing to do in a function: bind names, assign an output, or declare a param.
+struct Step<'a> {
+    target: Target<'a>,
+    value: &'a Expr,
+}
+
+/// What a step's value goes to.
+#[derive(Clone, Copy)]
+enum Target<'a> {
+    Let(&'a Pattern),
+    Output(&'a Name),
+    Global(&'a Name, &'a str),
+    Param(&'a texgraph_grammar::syntax::Item),
+}
+
+/// A function in the making.
+pub struct Frame<'a> {
+    /// None for the `let`s and params of a file.
+    key: Option<Key>,
+    node: Option<&'a Node>,
+    module: usize,
+    dims: Dims,
+    builder: Builder,
+    scopes: Vec<FxHashMap<&'a str, Wire>>,
+    steps: Vec<Step<'a>>,
+    order: Vec<usize>,
+    next: usize,
+    /// The names that the steps bind.
+    bound: FxHashSet<&'a str>,
+    /// Nodes that the current step waits for, with the calls.
+    waiting: Vec<(Key, Place)>,
+    failed: bool,
+    /// Index of the frame that waits for this one.
+    parent: Option<usize>,
+    /// The statement whose value is being made; names made-up resources.
+    current: String,
+}
+
+impl<'a> Checker<'a> {
+    /// Over the library's and a user's modules.
+    pub fn new(library: &'a Library, modules: &'a [Module]) -> Checker<'a> {
+        Checker {
+            library,
+            modules,
+            globals: vec![FxHashMap::default(); modules.len()],
+            aliases: globals::aliases(modules, library.modules().len()),
+            made: FxHashMap::default(),
+            interned: FxHashMap::default(),
+            functions: Vec::new(),
+            params: Vec::new(),
+            resources: Vec::new(),
+            resource_wires: Vec::new(),
+            views: Vec::new(),
+            diagnostics: Vec::new(),
+            full: false,
+        }
+    }
+
+    /// All errors so far, in source order, each once.
+    pub fn into_diagnostics(mut self) -> Vec<Diagnostic> {
+        self.diagnostics.sort_by_key(|d| (d.place, d.code));
+        self.diagnostics.dedup_by_key(|d| (d.place, d.code));
+        self.diagnostics
+    }
+
+    /// Whether nothing was wrong so far.
+    pub fn is_fine(&self) -> bool {
+        self.diagnostics.is_empty()
+    }
+
+    /// The documentation of the item of `key`.
+    pub fn doc(&self, key: &Key) -> String {
+        self.modules[key.module].tree.items.get(key.item).map_or(String::new(), |item| item.doc.clone())
+    }
+
+    /// The graph whose entry is the node of `key`, made before.
+    pub fn into_graph(self, key: &Key) -> Option<Graph> {
+        let Some(Outcome::Made(entry)) = self.made.get(key).copied() else { return None };
+        let mut functions = self.functions;
+        let entry = functions.get(entry.0 as usize)?.clone();
+        functions.push(entry);
+        Some(Graph { functions, params: self.params, resources: self.resources, views: self.views })
+    }
+
+    fn report(&mut self, f: &mut Frame<'a>, diagnostic: Diagnostic) -> Wire {
+        f.failed = true;
+        self.diagnostics.push(diagnostic);
+        Wire::Unknown
+    }
+
+    /// The node of an item.
+    fn node(&self, module: usize, item: usize) -> Option<&'a Node> {
+        match &self.modules.get(module)?.tree.items.get(item)?.kind {
+            ItemKind::Node(node) | ItemKind::Texture { node, .. } => Some(node),
+            _ => None,
+        }
+    }
+
+    /// Makes a function and all it calls.
+    fn run(&mut self, root: Frame<'a>) {
+        let mut stack = vec![root];
+        while let Some(mut top) = stack.pop() {
+            // Two steps may have waited for the same node; the second finds it made.
+            if top.key.as_ref().is_some_and(|key| self.made.contains_key(key)) {
+                continue;
+            }
+            if self.step(&mut top) {
+                self.close(top);
+                continue;
+            }
+            let waiting = std::mem::take(&mut top.waiting);
+            let parent = stack.len();
+            stack.push(top);
+            for (key, place) in waiting {
+                match self.start(&stack, parent, &key, place) {
+                    Some(frame) => stack.push(frame),
+                    None => {
+                        self.made.insert(key, Outcome::Failed);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A frame for a node that is waited for; none where it can't be made, which is reported.
+    fn start(&mut self, stack: &[Frame<'a>], parent: usize, key: &Key, place: Place) -> Option<Frame<'a>> {
+        let node = self.node(key.module, key.item)?;
+        let mut up = Some(parent);
+        while let Some(frame) = up.and_then(|i| stack.get(i)) {
+            if frame.key.as_ref().is_some_and(|k| (k.module, k.item) == (key.module, key.item)) {
+                self.diagnostics.push(names::recursion(place, &node.name.text));
+                return None;
+            }
+            up = frame.parent;
+        }
+        if self.made.len() >= limits::MAX_NODES {
+            if !self.full {
+                self.diagnostics.push(limits::too_many_nodes(place, &node.name.text));
+            }
+            self.full = true;
+            return None;
+        }
+        Some(self.frame(node, key.clone(), Some(parent)))
+    }
+
+    /// A frame with the inputs of its node in scope.
+    fn frame(&mut self, node: &'a Node, key: Key, parent: Option<usize>) -> Frame<'a> {
+        let mut f = Frame::empty();
+        f.builder = Builder::new(node.name.text.clone());
+        f.node = Some(node);
+        f.module = key.module;
+        f.parent = parent;
+        f.dims = node.dims.iter().map(|d| d.text.clone()).zip(key.dims.iter().copied()).collect();
+        for (input, argument) in node.inputs.iter().zip(&key.arguments) {
+            let wire = input_wire(&mut f.builder, input, argument);
+            f.scopes[0].insert(&input.name.text, wire);
+        }
+        f.key = Some(key);
+        self.plan_node(&mut f, node);
+        f
+    }
+
+    /// The steps of a node, and what is wrong with their names.
+    fn plan_node(&mut self, f: &mut Frame<'a>, node: &'a Node) {
+        f.builder.set_inline(node.body.statements.len() == 1 && node.outputs.len() == 1);
+        self.distinct(f, node.inputs.iter().map(|i| &i.name).chain(node.outputs.iter().map(|o| &o.name)));
+        let mut names_bound: Vec<&'a Name> = node.inputs.iter().map(|i| &i.name).collect();
+        for statement in &node.body.statements {
+            match statement {
+                Statement::Let { pattern, value, .. } => {
+                    match pattern {
+                        Pattern::Name(name) => names_bound.push(name),
+                        Pattern::Record(names, _) => names_bound.extend(names),
+                    }
+                    f.steps.push(Step { target: Target::Let(pattern), value });
+                }
+                Statement::Assign { name, value } => {
+                    self.assign(f, node, name);
+                    names_bound.push(name);
+                    f.steps.push(Step { target: Target::Output(name), value });
+                }
+            }
+        }
+        self.distinct(f, names_bound.into_iter());
+        self.outputs_assigned(f, node);
+        self.sort(f);
+    }
+
+    fn assign(&mut self, f: &mut Frame<'a>, node: &'a Node, name: &Name) {
+        if !node.outputs.iter().any(|output| output.name.text == name.text) {
+            let near = names::nearest(&name.text, node.outputs.iter().map(|o| o.name.text.as_str()));
+            let place = self.place(f, name.span);
+            self.report(f, names::no_such_output(place, &node.name.text, &name.text, near));
+        }
+    }
+
+    fn outputs_assigned(&mut self, f: &mut Frame<'a>, node: &'a Node) {
+        let misspelt = node.body.statements.iter().any(|s| match s {
+            Statement::Assign { name, .. } => !node.outputs.iter().any(|o| o.name.text == name.text),
+            Statement::Let { .. } => false,
+        });
+        for output in &node.outputs {
+            let assigned = node
+                .body
+                .statements
+                .iter()
+                .any(|s| matches!(s, Statement::Assign { name, .. } if name.text == output.name.text));
+            // A misspelt assignment is reported already: one slip, one error.
+            if !assigned && !misspelt {
+                let place = self.place(f, output.name.span);
+                self.report(f, names::output_missing(place, &node.name.text, &output.name.text));
+            }
+        }
+    }
+
+    /// Reports each name that stands twice.
+    fn distinct(&mut self, f: &mut Frame<'a>, bound: impl Iterator<Item = &'a Name>) {
+        let mut seen: FxHashMap<&str, &Name> = FxHashMap::default();
+        for name in bound {
+            if let Some(first) = seen.insert(&name.text, name) {
+                let (place, first) = (self.place(f, name.span), self.place(f, first.span));
+                self.report(f, names::bound_twice(place, &name.text, first));
+            }
+        }
+    }
+
+    /// Puts the steps into an order that works.
+    fn sort(&mut self, f: &mut Frame<'a>) {
+        let mut binder: FxHashMap<&str, usize> = FxHashMap::default();
+        for (i, step) in f.steps.iter().enumerate() {
+            step.names().into_iter().for_each(|name| {
+                binder.insert(name, i);
+            });
+        }
+        f.bound = binder.keys().copied().collect();
+        let reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
+        let needs: Vec<Vec<usize>> = f
+            .steps
+            .iter()
+            .map(|step| {
+                let free = order::Free::of(step.value);
+                let through = reach.as_ref().map(|reach| reach.values(&free.calls)).unwrap_or_default();
+                free.values.iter().chain(&through).filter_map(|name| binder.get(name).copied()).collect()
+            })
+            .collect();
+        match order::sort(&needs) {
+            Ok(order) => f.order = order,
+            Err(ring) => {
+                let first = ring.iter().copied().min().unwrap_or(0);
+                let start = ring.iter().position(|i| *i == first).unwrap_or(0);
+                let ring: Vec<&Step> = ring[start..].iter().chain(&ring[..start]).map(|i| &f.steps[*i]).collect();
+                let names: Vec<&str> = ring.iter().filter_map(|step| step.names().first().copied()).collect();
+                let place = self.place(f, ring.first().map_or(Span::default(), |step| step.span()));
+                let diagnostic = names::cycle(place, &names);
+                self.report(f, diagnostic);
+            }
+        }
+    }
+
+    /// Runs steps until the function is done (true) or one has to wait (false).
+    fn step(&mut self, f: &mut Frame<'a>) -> bool {
+        while let Some(step) = f.order.get(f.next) {
+            let Step { target, value } = f.steps[*step];
+            let (mark, failed) = (self.diagnostics.len(), f.failed);
+            f.current = target.name().to_owned();
+            let wire = self.expr(f, value);
+            if !f.waiting.is_empty() {
+                // What was said while waiting may be a consequence of it; the step runs again.
+                self.diagnostics.truncate(mark);
+                f.failed = failed;
+                return false;
+            }
+            self.finish_step(f, target, value, wire);
+            if !f.waiting.is_empty() {
+                // The ends of a param's range may call nodes too.
+                self.diagnostics.truncate(mark);
+                f.failed = failed;
+                return false;
+            }
+            f.next += 1;
+            if f.builder.function().values.len() > limits::MAX_VALUES {
+                let place = self.place(f, value.span);
+                let name = f.builder.function().name.clone();
+                self.report(f, limits::too_many_values(place, &name));
+                return true;
+            }
+        }
+        true
+    }
+
+    fn finish_step(&mut self, f: &mut Frame<'a>, target: Target<'a>, value: &'a Expr, wire: Wire) {
+        let place = self.place(f, value.span);
+        match target {
+            Target::Let(Pattern::Name(name)) => self.bind(f, name, wire),
+            Target::Let(Pattern::Record(names, span)) => {
+                let place = self.place(f, *span);
+                self.take_apart(f, names, wire, place);
+            }
+            Target::Output(name) => self.set_output(f, name, wire, place),
+            Target::Global(name, doc) => self.set_global(f, name, doc, wire, place),
+            Target::Param(item) => self.set_param(f, item, wire, place),
+        }
+    }
+
+    fn bind(&mut self, f: &mut Frame<'a>, name: &'a Name, wire: Wire) {
+        if let Wire::Value(value) = wire {
+            f.builder.name(value, &name.text);
+        }
+        // A bare word that reaches a wire is a name that nobody declared.
+        let wire = if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
+        if let Some(scope) = f.scopes.last_mut() {
+            scope.insert(&name.text, wire);
+        }
+    }
+
+    fn take_apart(&mut self, f: &mut Frame<'a>, names: &'a [Name], wire: Wire, place: Place) {
+        let outputs = match &wire {
+            Wire::Record(outputs) => Rc::clone(outputs),
+            Wire::Unknown => Rc::new(Vec::new()),
+            _ => {
+                self.report(f, type_errors::not_a_record(place));
+                Rc::new(Vec::new())
+            }
+        };
+        if matches!(wire, Wire::Record(_)) && outputs.len() != names.len() {
+            let known: Vec<String> = outputs.iter().map(|(name, _)| format!("`{name}`")).collect();
+            self.report(f, type_errors::destructuring(place, names.len(), &known));
+        }
+        for (i, name) in names.iter().enumerate() {
+            let wire = outputs.get(i).map_or(Wire::Unknown, |(_, wire)| wire.clone());
+            self.bind(f, name, wire);
+        }
+    }
+
+    fn set_output(&mut self, f: &mut Frame<'a>, name: &'a Name, wire: Wire, place: Place) {
+        let declared = f.node.and_then(|node| node.outputs.iter().find(|o| o.name.text == name.text));
+        let wire = match declared.map(|output| types::resolve(&output.ty, &f.dims, self.modules[f.module].file)) {
+            Some(Ok(Declared::Vector(scalar, width))) => {
+                self.coerce_value(f, &wire, scalar, width, place).map_or(Wire::Unknown, Wire::Value)
+            }
+            Some(Ok(_)) => {
+                let ty = declared.map(|o| types::show(&o.ty)).unwrap_or_default();
+                let place = self.place(f, declared.map_or(name.span, |o| o.ty.span));
+                self.report(f, type_errors::type_not_allowed(place, &ty, "an output"))
+            }
+            Some(Err(diagnostic)) => self.report(f, diagnostic),
+            None => Wire::Unknown,
+        };
+        self.bind(f, name, wire);
+    }
+
+    /// Puts a finished node among the functions: the equal one there is already, or a new one.
+    fn close(&mut self, mut f: Frame<'a>) {
+        let Some(key) = f.key.take() else { return };
+        let node = f.node;
+        for output in node.iter().flat_map(|node| &node.outputs) {
+            match f.scopes[0].get(output.name.text.as_str()) {
+                Some(Wire::Value(value)) => f.builder.output(output.name.text.clone(), *value),
+                _ => f.failed = true,
+            }
+        }
+        let outcome = if f.failed { Outcome::Failed } else { Outcome::Made(self.intern(f.builder.finish())) };
+        self.made.insert(key, outcome);
+    }
+
+    fn intern(&mut self, function: Function) -> FunctionId {
+        let hash = structure(&function);
+        let alike = self.interned.entry(hash).or_default();
+        let same = |id: &&FunctionId| {
+            let other = &self.functions[id.0 as usize];
+            other.name == function.name
+                && other.values == function.values
+                && other.types == function.types
+                && other.outputs == function.outputs
+                && other.inputs == function.inputs
+        };
+        if let Some(id) = alike.iter().find(same) {
+            return *id;
+        }
+        let id = FunctionId(self.functions.len() as u32);
+        alike.push(id);
+        self.functions.push(function);
+        id
+    }
+
+    /// A place in the file of the frame's module.
+    fn place(&self, f: &Frame<'a>, span: Span) -> Place {
+        Place { file: self.modules[f.module].file, span }
+    }
+
+    fn param_value(&self, f: &mut Frame<'a>, id: ParamId) -> Wire {
+        let ty = self.params.get(id.0 as usize).map_or(Type::FLOAT, |param| param.ty);
+        Wire::Value(f.builder.push(crate::graph::Operation::Param(id), ty))
+    }
+
+    /// A resource in the function being made.
+    fn resource_value(&self, f: &mut Frame<'a>, resource: usize) -> Wire {
+        let (kind, ids, constants) = &self.resource_wires[resource];
+        let mut views = Vec::new();
+        for id in ids {
+            let ResourceView { field, view, .. } = &self.views[id.0 as usize];
+            views.push((*field, f.builder.push(crate::graph::Operation::View(*id), Type::View(*view))));
+        }
+        Wire::Resource(Rc::new(ResourceWire { kind: *kind, views, constants: constants.clone() }))
+    }
+}
+
+impl<'a> Frame<'a> {
+    fn empty() -> Frame<'a> {
+        Frame {
+            key: None,
+            node: None,
+            module: 0,
+            dims: Vec::new(),
+            builder: Builder::default(),
+            scopes: vec![FxHashMap::default()],
+            steps: Vec::new(),
+            order: Vec::new(),
+            bound: FxHashSet::default(),
+            next: 0,
+            waiting: Vec::new(),
+            failed: false,
+            parent: None,
+            current: String::new(),
+        }
+    }
+}
+
+impl<'a> Step<'a> {
+    fn names(&self) -> Vec<&'a str> {
+        match self.target {
+            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => vec![&name.text],
+            Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
+            Target::Param(_) => vec![self.target.name()],
+        }
+    }
+
+    fn span(&self) -> Span {
+        self.value.span
+    }
+}
+
+impl<'a> Target<'a> {
+    fn name(&self) -> &'a str {
+        match *self {
+            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => &name.text,
+            Target::Let(Pattern::Record(names, _)) => names.first().map_or("", |name| &name.text),
+            Target::Param(item) => match &item.kind {
+                ItemKind::Param { name, .. } => &name.text,
+                _ => "",
+            },
+        }
+    }
+}
+
+/// What an input of a function is, given what is known of its argument.
+fn input_wire(builder: &mut Builder, input: &Input, argument: &ArgumentKey) -> Wire {
+    let name = &input.name.text;
+    match argument {
+        ArgumentKey::Constant(constant) => Wire::Value(builder.constant(*constant)),
+        ArgumentKey::Value(ty) => Wire::Value(builder.input(name.clone(), *ty)),
+        ArgumentKey::Resource(kind, constants) => {
+            let mut views = Vec::new();
+            for field in KINDS[*kind].fields {
+                if let FieldKind::View(view) = field.kind {
+                    let full = format!("{name}_{}", field.name);
+                    views.push((field.name, builder.input(full, Type::View(view))));
+                }
+            }
+            Wire::Resource(Rc::new(ResourceWire { kind: *kind, views, constants: constants.clone() }))
+        }
+        ArgumentKey::Word(word) => Wire::Word(word.clone(), Place::default()),
+        ArgumentKey::None => Wire::None,
+    }
+}
+
+fn structure(function: &Function) -> u64 {
+    use std::hash::{Hash, Hasher};
+    let mut hasher = rustc_hash::FxHasher::default();
+    function.name.hash(&mut hasher);
+    function.values.hash(&mut hasher);
+    function.inputs.hash(&mut hasher);
+    hasher.finish()
+}

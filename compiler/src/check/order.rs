@@ -1,0 +1,202 @@
+//! Which wire needs which: free names of expressions, and statements in an order that works.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+use texgraph_grammar::syntax::{Body, Expr, ExprKind, Fold, Node, Pattern, Postfix, Statement};
+
+/// The names that an expression takes from outside.
+#[derive(Default, Debug)]
+pub struct Free<'a> {
+    /// Read as values, in source order.
+    pub values: Vec<&'a str>,
+    /// Called.
+    pub calls: Vec<&'a str>,
+    /// Names bound around the place of the walk, with how many times.
+    bound: FxHashMap<&'a str, u32>,
+}
+
+impl<'a> Free<'a> {
+    /// Of an expression.
+    pub fn of(expr: &'a Expr) -> Free<'a> {
+        let mut free = Free::default();
+        free.expr(expr);
+        free
+    }
+
+    /// Of a node's body: its inputs and wires are not free in it.
+    pub fn of_node(node: &'a Node) -> Free<'a> {
+        let mut free = Free::default();
+        free.bind(node.inputs.iter().map(|input| input.name.text.as_str()));
+        node.inputs.iter().filter_map(|input| input.default.as_ref()).for_each(|default| free.expr(default));
+        free.body(&node.body);
+        free
+    }
+
+    fn name(&mut self, name: &'a str) {
+        if self.bound.get(name).is_none_or(|count| *count == 0) {
+            self.values.push(name);
+        }
+    }
+
+    fn bind(&mut self, names: impl IntoIterator<Item = &'a str>) {
+        names.into_iter().for_each(|name| *self.bound.entry(name).or_insert(0) += 1);
+    }
+
+    fn unbind(&mut self, names: impl IntoIterator<Item = &'a str>) {
+        for name in names {
+            if let Some(count) = self.bound.get_mut(name) {
+                *count = count.saturating_sub(1);
+            }
+        }
+    }
+
+    fn body(&mut self, body: &'a Body) {
+        self.bind(body.statements.iter().flat_map(names_of));
+        body.statements.iter().for_each(|statement| self.expr(value_of(statement)));
+        self.unbind(body.statements.iter().flat_map(names_of));
+    }
+
+    fn fold(&mut self, fold: &'a Fold) {
+        fold.accumulators.iter().for_each(|(_, start)| self.expr(start));
+        self.expr(&fold.range.start);
+        self.expr(&fold.range.end);
+        fold.max.iter().for_each(|max| self.expr(max));
+        let accumulators = || fold.accumulators.iter().map(|(name, _)| name.text.as_str());
+        self.bind(accumulators());
+        fold.condition.iter().for_each(|condition| self.expr(condition));
+        self.bind([fold.variable.text.as_str()]);
+        self.body(&fold.body);
+        self.unbind(accumulators().chain([fold.variable.text.as_str()]));
+    }
+
+    /// Recursion is bounded by the nesting of the text.
+    fn expr(&mut self, expr: &'a Expr) {
+        match &expr.kind {
+            ExprKind::Name(name) => self.name(name),
+            ExprKind::Paren(inner) => self.expr(inner),
+            ExprKind::Call(call) => {
+                self.calls.push(&call.name.text);
+                call.arguments.iter().for_each(|argument| self.expr(&argument.value));
+            }
+            ExprKind::Postfix { base, links } => {
+                self.expr(base);
+                links.iter().for_each(|link| self.link(link));
+            }
+            ExprKind::Unary { operand, .. } => self.expr(operand),
+            ExprKind::Chain { first, links } => {
+                self.expr(first);
+                links.iter().for_each(|link| self.expr(&link.operand));
+            }
+            ExprKind::If { arms, otherwise } => {
+                arms.iter().flat_map(|(condition, arm)| [condition, arm]).for_each(|e| self.expr(e));
+                self.expr(otherwise);
+            }
+            ExprKind::List(items) => items.iter().for_each(|item| self.expr(item)),
+            ExprKind::Lambda { inputs, body } => {
+                self.bind(inputs.iter().map(|input| input.text.as_str()));
+                self.expr(body);
+                self.unbind(inputs.iter().map(|input| input.text.as_str()));
+            }
+            ExprKind::Fold(fold) => self.fold(fold),
+            ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Bool(_) | ExprKind::Text(_) | ExprKind::Color(_) => {}
+        }
+    }
+
+    fn link(&mut self, link: &'a Postfix) {
+        match link {
+            Postfix::Field(_) => {}
+            Postfix::Method(call, _) => {
+                self.calls.push(&call.name.text);
+                call.arguments.iter().for_each(|argument| self.expr(&argument.value));
+            }
+            Postfix::Index(index, _) => self.expr(index),
+        }
+    }
+}
+
+/// The names a statement binds.
+pub fn names_of(statement: &Statement) -> Vec<&str> {
+    match statement {
+        Statement::Let { pattern: Pattern::Name(name), .. } | Statement::Assign { name, .. } => vec![&name.text],
+        Statement::Let { pattern: Pattern::Record(names, _), .. } => names.iter().map(|n| n.text.as_str()).collect(),
+    }
+}
+
+/// The expression of a statement.
+pub fn value_of(statement: &Statement) -> &Expr {
+    match statement {
+        Statement::Let { value, .. } | Statement::Assign { value, .. } => value,
+    }
+}
+
+/// Steps so that each comes after those it needs, in source order where that is free; or the ring
+/// of steps that need each other.
+pub fn sort(needs: &[Vec<usize>]) -> Result<Vec<usize>, Vec<usize>> {
+    #[derive(Clone, Copy, PartialEq)]
+    enum State {
+        New,
+        Open,
+        Done,
+    }
+    let mut state = vec![State::New; needs.len()];
+    let mut order = Vec::with_capacity(needs.len());
+    for root in 0..needs.len() {
+        let mut stack = if state[root] == State::New { vec![(root, 0)] } else { continue };
+        state[root] = State::Open;
+        while let Some((step, next)) = stack.last_mut() {
+            let Some(&needed) = needs[*step].get(*next) else {
+                state[*step] = State::Done;
+                order.push(*step);
+                stack.pop();
+                continue;
+            };
+            *next += 1;
+            match state[needed] {
+                State::Done => {}
+                State::New => {
+                    state[needed] = State::Open;
+                    stack.push((needed, 0));
+                }
+                State::Open => {
+                    let open: Vec<usize> = stack.iter().map(|(step, _)| *step).collect();
+                    let start = open.iter().position(|step| *step == needed).unwrap_or(0);
+                    return Err(open[start..].to_vec());
+                }
+            }
+        }
+    }
+    Ok(order)
+}
+
+/// What calls of a file's nodes read of the file, through any number of further calls.
+pub struct Reach<'a> {
+    /// The nodes by name, with what each takes from outside.
+    nodes: FxHashMap<&'a str, Vec<Free<'a>>>,
+}
+
+impl<'a> Reach<'a> {
+    /// Of the nodes of a file.
+    pub fn new(nodes: impl Iterator<Item = &'a Node>) -> Reach<'a> {
+        let mut reach = Reach { nodes: FxHashMap::default() };
+        for node in nodes {
+            reach.nodes.entry(&node.name.text).or_default().push(Free::of_node(node));
+        }
+        reach
+    }
+
+    /// The names read by nodes that are called by these names.
+    pub fn values(&self, calls: &[&'a str]) -> Vec<&'a str> {
+        let mut values = Vec::new();
+        let mut seen = FxHashSet::default();
+        let mut queue: Vec<&str> = calls.to_vec();
+        while let Some(name) = queue.pop() {
+            if !seen.insert(name) {
+                continue;
+            }
+            for free in self.nodes.get(name).into_iter().flatten() {
+                values.extend(&free.values);
+                queue.extend(&free.calls);
+            }
+        }
+        values
+    }
+}

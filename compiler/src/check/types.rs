@@ -1,0 +1,159 @@
+//! Types as declared, and how a value becomes one of another type.
+
+use super::wire::Wire;
+use crate::diagnostic::{Diagnostic, Place, types};
+use crate::graph::{Scalar, Type};
+use crate::resource::{KINDS, LATER};
+use texgraph_grammar::syntax::{self, Dim, TypeKind};
+
+/// A declared type with its dimension variables bound.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Declared {
+    /// A number, vector or bool.
+    Vector(Scalar, u8),
+    /// A resource, by its row in the table of kinds.
+    Resource(usize),
+    /// One of these words.
+    Choice(Vec<String>),
+    /// Constructors only: a string.
+    Text,
+    /// Constructors only: one string or a list of them.
+    Texts,
+    /// Constructors only: a string, or rows of ints.
+    Cells,
+}
+
+/// Dimension variables with their values.
+pub type Dims = Vec<(String, u8)>;
+
+/// The scalar and fixed width of a named vector type; width `None` for the generic forms.
+fn vector(name: &str) -> Option<(Scalar, Option<u8>)> {
+    Some(match name {
+        "float" => (Scalar::Float, Some(1)),
+        "vec2" => (Scalar::Float, Some(2)),
+        "vec3" => (Scalar::Float, Some(3)),
+        "vec4" | "color" => (Scalar::Float, Some(4)),
+        "vec" => (Scalar::Float, None),
+        "int" => (Scalar::Int, Some(1)),
+        "ivec2" => (Scalar::Int, Some(2)),
+        "ivec3" => (Scalar::Int, Some(3)),
+        "ivec4" => (Scalar::Int, Some(4)),
+        "ivec" => (Scalar::Int, None),
+        "bool" => (Scalar::Bool, Some(1)),
+        "bvec" => (Scalar::Bool, None),
+        _ => return None,
+    })
+}
+
+/// If a name before `(` constructs a vector: its scalar and width (`None` for `vec<n>`, `ivec<n>`).
+pub fn vector_constructor(name: &str) -> Option<(Scalar, Option<u8>)> {
+    vector(name).filter(|_| !matches!(name, "bvec" | "color"))
+}
+
+/// The dimension variable of a generic type, `vec<n>`.
+pub fn dimension_variable(ty: &syntax::Type) -> Option<&str> {
+    match &ty.kind {
+        TypeKind::Named { dim: Some(Dim::Name(name)), .. } => Some(&name.text),
+        _ => None,
+    }
+}
+
+/// The scalar of a vector type, whatever its width.
+pub fn scalar_of(ty: &syntax::Type) -> Option<Scalar> {
+    match &ty.kind {
+        TypeKind::Named { name, .. } => vector(&name.text).map(|(scalar, _)| scalar),
+        _ => None,
+    }
+}
+
+/// A declared type under a binding of its dimension variables.
+pub fn resolve(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Diagnostic> {
+    let place = Place { file, span: ty.span };
+    match &ty.kind {
+        TypeKind::Named { name, dim } => match vector(&name.text) {
+            Some((scalar, Some(width))) if dim.is_none() => Ok(Declared::Vector(scalar, width)),
+            Some((scalar, None)) => Ok(Declared::Vector(scalar, width_of(dim.as_ref(), dims, place)?)),
+            Some(_) => Err(types::unknown_type(place, &show(ty), Some(name.text.clone()))),
+            None => resolve_other(&name.text, place),
+        },
+        TypeKind::Choice(words) => Ok(Declared::Choice(words.iter().map(|w| w.text.clone()).collect())),
+        TypeKind::Node { .. } => Err(crate::diagnostic::unsupported::not_yet(place, "nodes as inputs")),
+        TypeKind::Record(_) => Err(types::type_not_allowed(place, "a record", "an input or output")),
+    }
+}
+
+fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
+    if let Some(kind) = KINDS.iter().position(|kind| kind.name == name) {
+        return Ok(Declared::Resource(kind));
+    }
+    match name {
+        "text" => Ok(Declared::Text),
+        "texts" => Ok(Declared::Texts),
+        "cells" => Ok(Declared::Cells),
+        "mat2" | "mat3" => Err(crate::diagnostic::unsupported::not_yet(place, "matrices")),
+        _ if LATER.contains(&name) => Err(crate::diagnostic::unsupported::not_yet(place, &format!("`{name}`"))),
+        _ => {
+            let known = ["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "bool", "color"];
+            let known = known.into_iter().chain(KINDS.iter().map(|kind| kind.name));
+            Err(types::unknown_type(place, name, crate::diagnostic::names::nearest(name, known)))
+        }
+    }
+}
+
+/// The width that a generic type's `<n>` stands for.
+pub fn width_of(dim: Option<&Dim>, dims: &Dims, place: Place) -> Result<u8, Diagnostic> {
+    match dim {
+        Some(Dim::Number(n, _)) if (1..=4).contains(n) => Ok(*n as u8),
+        Some(Dim::Number(n, _)) => Err(types::bad_dimension(place, *n)),
+        Some(Dim::Name(name)) => match dims.iter().find(|(known, _)| *known == name.text) {
+            Some((_, width)) => Ok(*width),
+            None => Err(types::unknown_dimension(place, &name.text)),
+        },
+        None => Err(types::unknown_dimension(place, "n")),
+    }
+}
+
+/// A type as the author would write it.
+pub fn show(ty: &syntax::Type) -> String {
+    match &ty.kind {
+        TypeKind::Named { name, dim: None } => name.text.clone(),
+        TypeKind::Named { name, dim: Some(Dim::Name(n)) } => format!("{}<{}>", name.text, n.text),
+        TypeKind::Named { name, dim: Some(Dim::Number(n, _)) } => format!("{}<{n}>", name.text),
+        TypeKind::Choice(words) => words.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(" | "),
+        TypeKind::Node { .. } => "node".to_owned(),
+        TypeKind::Record(_) => "record".to_owned(),
+    }
+}
+
+/// The name of a value's type.
+pub fn name(ty: Type) -> String {
+    match ty {
+        Type::Vector(Scalar::Float, 1) => "float".to_owned(),
+        Type::Vector(Scalar::Float, width) => format!("vec{width}"),
+        Type::Vector(Scalar::Int, 1) => "int".to_owned(),
+        Type::Vector(Scalar::Int, width) => format!("ivec{width}"),
+        Type::Vector(Scalar::Bool, 1) => "bool".to_owned(),
+        Type::Vector(Scalar::Bool, width) => format!("bvec{width}"),
+        Type::View(_) => "view".to_owned(),
+    }
+}
+
+/// Whether a value of one scalar type may stand where another is wanted.
+pub fn widens(from: Scalar, to: Scalar) -> bool {
+    from == to || (from == Scalar::Int && to == Scalar::Float)
+}
+
+/// What a wire is, in the user's words.
+pub fn describe(wire: &Wire, ty: impl Fn(crate::graph::Value) -> Type) -> String {
+    match wire {
+        Wire::Value(value) => name(ty(*value)),
+        Wire::View(_) => "view".to_owned(),
+        Wire::Record(_) => "record".to_owned(),
+        Wire::Resource(resource) => KINDS[resource.kind].name.to_owned(),
+        Wire::Word(word, _) => word.clone(),
+        Wire::Text(_) => "text".to_owned(),
+        Wire::List(_) => "list".to_owned(),
+        Wire::None => "none".to_owned(),
+        Wire::Unknown => "unknown".to_owned(),
+    }
+}

@@ -1,0 +1,213 @@
+//! The manifest of a graph: which names, bindings and offsets its shader has.
+//!
+//! Lowering reads the names and places from here, so the two can't disagree.
+
+use crate::graph::{self, Constant, Graph, Operation, ParamId, Scalar, ViewDimension, ViewId};
+use crate::manifest::{
+    self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source, Texture, Type,
+    Uniform, Value,
+};
+use crate::{Options, naming};
+use std::collections::BTreeSet;
+
+/// Inputs that are the same for a whole draw: the complete form reads them from the uniform block.
+const PER_DRAW: &[&str] = &["time", "base", "instance"];
+
+/// The params and views that a program reads, in order.
+pub struct Reads {
+    /// Of the whole program.
+    pub params: BTreeSet<ParamId>,
+    /// Of the whole program.
+    pub views: BTreeSet<ViewId>,
+}
+
+/// What any function of the graph reads.
+pub fn reads(graph: &Graph) -> Reads {
+    let mut reads = Reads { params: BTreeSet::new(), views: BTreeSet::new() };
+    for operation in graph.functions.iter().flat_map(|function| &function.values) {
+        match operation {
+            Operation::Param(id) => {
+                reads.params.insert(*id);
+            }
+            Operation::View(id) => {
+                reads.views.insert(*id);
+            }
+            _ => {}
+        }
+    }
+    reads
+}
+
+/// Everything a host has to know of a graph's shader.
+pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
+    let entry = graph.function(graph.entry());
+    let name = naming::identifier(&entry.name);
+    let reads = reads(graph);
+    let mut block = Block::default();
+    let params = params(graph, &reads, &mut block);
+    let inputs = inputs(entry, options.form, &mut block);
+    let mut next = options.first_binding;
+    let uniform = (block.size > 0).then(|| {
+        next += 1;
+        Uniform {
+            name: format!("{name}_params"),
+            group: options.group,
+            binding: options.first_binding,
+            size: block.size.next_multiple_of(16),
+        }
+    });
+    let entry_point = match options.form {
+        Form::Complete => format!("{name}_fragment"),
+        Form::Library => name.clone(),
+    };
+    let derivative = |op: &Operation| matches!(op, Operation::Derivative(..));
+    Manifest {
+        version: manifest::VERSION,
+        generator: format!("texgraph {}", env!("CARGO_PKG_VERSION")),
+        texture: entry.name.clone(),
+        label: label.to_owned(),
+        form: options.form,
+        inputs,
+        outputs: outputs(entry),
+        params,
+        uniform,
+        resources: resources(graph, &reads, &name, options.group, next),
+        passes: vec![Pass {
+            name: entry.name.clone(),
+            shader: format!("{}.wgsl", entry.name),
+            entry_point,
+            gradients: if entry.values.iter().any(derivative) { Gradients::Derive } else { Gradients::None },
+        }],
+    }
+}
+
+/// The uniform block as it grows.
+#[derive(Default)]
+struct Block {
+    size: u32,
+}
+
+impl Block {
+    /// The offset of a member of that width, natural alignment.
+    fn add(&mut self, width: u8) -> u32 {
+        let align = match width {
+            1 => 4,
+            2 => 8,
+            _ => 16,
+        };
+        let offset = self.size.next_multiple_of(align);
+        self.size = offset + 4 * u32::from(width);
+        offset
+    }
+}
+
+fn params(graph: &Graph, reads: &Reads, block: &mut Block) -> Vec<Param> {
+    let params = graph.params.iter().enumerate();
+    params
+        .map(|(i, param)| {
+            let read = reads.params.contains(&ParamId(i as u32));
+            Param {
+                name: param.name.clone(),
+                label: param.label.clone(),
+                ty: public_type(param.ty),
+                default: value(&param.default),
+                range: param.range.as_ref().map(|(low, high)| (value(low), value(high))),
+                offset: read.then(|| block.add(param.ty.width())),
+            }
+        })
+        .collect()
+}
+
+fn inputs(entry: &graph::Function, form: Form, block: &mut Block) -> Vec<Input> {
+    let mut location = 0;
+    let mut source = |slot: &graph::Slot| match form {
+        Form::Library => Source::Member,
+        Form::Complete if PER_DRAW.contains(&slot.name.as_str()) => Source::Uniform(block.add(slot.ty.width())),
+        Form::Complete => {
+            location += 1;
+            Source::Varying(location - 1)
+        }
+    };
+    let inputs = entry.inputs.iter();
+    inputs.map(|slot| Input { name: slot.name.clone(), ty: public_type(slot.ty), source: source(slot) }).collect()
+}
+
+fn outputs(entry: &graph::Function) -> Vec<Output> {
+    let outputs = entry.outputs.iter().enumerate();
+    outputs
+        .map(|(i, (slot, _))| Output {
+            name: slot.name.clone(),
+            ty: public_type(slot.ty),
+            location: i as u32,
+            is_color: slot.name == "color",
+        })
+        .collect()
+}
+
+/// The resources, all of them, so that indices agree with the graph's; those without textures are
+/// not read and need not be loaded.
+fn resources(graph: &Graph, reads: &Reads, prefix: &str, group: u32, first: u32) -> Vec<Resource> {
+    let mut binding = first;
+    let mut next = || {
+        binding += 1;
+        binding - 1
+    };
+    let mut all: Vec<Resource> = graph
+        .resources
+        .iter()
+        .map(|r| Resource {
+            name: r.name.clone(),
+            label: r.label.clone(),
+            recipe: r.recipe.clone(),
+            textures: Vec::new(),
+        })
+        .collect();
+    for id in &reads.views {
+        let view = &graph.views[id.0 as usize];
+        let resource = &graph.resources[view.resource as usize];
+        let name = format!("{prefix}_{}", naming::identifier(&resource.name));
+        all[view.resource as usize].textures.push(Texture {
+            field: view.field.to_owned(),
+            name: format!("{name}_{}", view.field),
+            group,
+            binding: next(),
+            view: match view.view.dimension {
+                ViewDimension::D2 => manifest::ViewDimension::D2,
+                ViewDimension::D2Array => manifest::ViewDimension::D2Array,
+                ViewDimension::D3 => manifest::ViewDimension::D3,
+            },
+            sample: match view.view.texel {
+                graph::Texel::Sampled => SampleKind::Float,
+                graph::Texel::Integer => SampleKind::Int,
+            },
+            sampler: resource.sampler.map(|state| Sampler {
+                name: format!("{name}_sampler"),
+                group,
+                binding: next(),
+                wrap: state.wrap,
+                filter: state.filter,
+                anisotropy: 1,
+            }),
+            table: None,
+        });
+    }
+    all
+}
+
+fn public_type(ty: graph::Type) -> Type {
+    let scalar = match ty.scalar() {
+        Some(Scalar::Int) => manifest::Scalar::Int,
+        Some(Scalar::Bool) => manifest::Scalar::Bool,
+        _ => manifest::Scalar::Float,
+    };
+    Type { scalar, width: ty.width() }
+}
+
+fn value(constant: &Constant) -> Value {
+    let components = 0..usize::from(constant.width());
+    match constant.scalar() {
+        Scalar::Float => Value::Float(components.map(|i| constant.float(i)).collect()),
+        Scalar::Int => Value::Int(components.map(|i| constant.int(i)).collect()),
+        Scalar::Bool => Value::Bool(components.map(|i| constant.bool(i)).collect()),
+    }
+}

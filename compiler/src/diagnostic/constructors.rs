@@ -1,0 +1,54 @@
+//! Sentences about constructors' arguments: what can be told without opening a file.
+
+use super::{Diagnostic, Place};
+
+/// A number that an argument can't have.
+pub fn out_of_bounds(place: Place, what: &str, found: i32, low: i32, high: i32) -> Diagnostic {
+    Diagnostic::new("E0551", place, format!("`{what}` is {found}, outside {low} to {high}"), "this number")
+        .help(format!("choose a number from {low} to {high}"))
+}
+
+/// A grid without cells.
+pub fn empty_grid(place: Place, columns: i32, rows: i32) -> Diagnostic {
+    Diagnostic::new("E0552", place, format!("a grid of {columns} × {rows} has no cells"), "this grid")
+        .help("give the columns and rows of the picture, `grid: ivec2(4, 4)`")
+}
+
+/// A grid for several files.
+pub fn grid_of_a_list(place: Place) -> Diagnostic {
+    Diagnostic::new("E0553", place, "a list of pictures has no grid", "each picture of the list is one pattern")
+        .help("leave `grid:` out, or give one picture")
+}
+
+/// More layers than a texture has.
+pub fn too_many_patterns(place: Place, count: i64) -> Diagnostic {
+    Diagnostic::new("E0554", place, format!("these are {count} patterns, from 1 to 256 are possible"), "this many")
+        .help("a pattern is a layer of a texture array, which has at most 256")
+}
+
+/// Rows of different lengths, or none.
+pub fn ragged_rows(place: Place) -> Diagnostic {
+    Diagnostic::new("E0555", place, "the rows of a map must have one length, at least 1", "this list")
+        .help("write it as `[[0, 1], [1, 0]]`")
+}
+
+/// An argument that is not a value of the kind wanted.
+pub fn wrong_argument(place: Place, input: &str, wanted: &str) -> Diagnostic {
+    Diagnostic::new("E0556", place, format!("`{input}` takes {wanted}"), format!("this is not {wanted}"))
+}
+
+/// A constructor's argument that is not known before the program runs.
+pub fn not_known(place: Place, input: &str) -> Diagnostic {
+    Diagnostic::new(
+        "E0302",
+        place,
+        format!("`{input}` of a resource must be known before anything is drawn"),
+        "this changes while the program runs",
+    )
+    .help("resources are made once, when loading: use constants")
+}
+
+/// Something of a constructor that is not built yet.
+pub fn not_yet(place: Place, what: &str) -> Diagnostic {
+    super::unsupported::not_yet(place, what)
+}

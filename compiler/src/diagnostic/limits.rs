@@ -1,0 +1,54 @@
+//! Sentences about the bounds of the language.
+
+use super::{Diagnostic, Place};
+
+/// Specialised nodes in a texture.
+pub const MAX_NODES: usize = 4_096;
+/// Values in a texture.
+pub const MAX_VALUES: usize = 200_000;
+
+/// More specialised nodes than a texture may have.
+pub fn too_many_nodes(place: Place, name: &str) -> Diagnostic {
+    Diagnostic::new(
+        "E0401",
+        place,
+        format!("a texture may use {MAX_NODES} nodes, each with its own constants; `{name}` is one too many"),
+        "this call",
+    )
+    .help("pass numbers that vary as params or computed values instead of constants")
+}
+
+/// More values than a texture may have.
+pub fn too_many_values(place: Place, name: &str) -> Diagnostic {
+    Diagnostic::new("E0402", place, format!("`{name}` holds more than {MAX_VALUES} operations"), "too large here")
+        .help("split the texture, or bake a part of it")
+}
+
+/// A fold with more steps than this version writes out.
+pub fn too_many_steps(place: Place, steps: i64) -> Diagnostic {
+    Diagnostic::new("E0404", place, format!("a fold of {steps} steps: not supported yet"), "at most 256 constant steps")
+}
+
+/// No texture to compile.
+pub fn no_texture(place: Place) -> Diagnostic {
+    Diagnostic::new("E0801", place, "the file declares no texture", "nothing to compile")
+        .help("declare one: `texture name(uv: vec2) -> (color: color) { color = … }`")
+}
+
+/// A texture asked for by a name that the file does not have.
+pub fn no_such_texture(place: Place, name: &str, known: &str) -> Diagnostic {
+    Diagnostic::new("E0802", place, format!("the file has no texture `{name}`"), "in this file")
+        .help(format!("its textures are {known}"))
+}
+
+/// An output asked for that the texture does not have.
+pub fn no_such_texture_output(place: Place, name: &str, known: &str) -> Diagnostic {
+    Diagnostic::new("E0803", place, format!("the texture has no output `{name}`"), "its head")
+        .help(format!("its outputs are {known}"))
+}
+
+/// A shader that naga refuses: our fault.
+pub fn bug(place: Place, what: &str) -> Diagnostic {
+    Diagnostic::new("E0999", place, format!("a bug of texgraph: {what}"), "the shader of this is refused")
+        .help("please report it with the file")
+}

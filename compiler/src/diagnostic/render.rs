@@ -1,0 +1,219 @@
+//! The layout of error pages: the only place that knows codespan-reporting.
+
+use super::{Diagnostic, Place};
+use crate::module::Sources;
+use codespan_reporting::diagnostic::{Diagnostic as Page, Label};
+use codespan_reporting::files::{Error, Files};
+use codespan_reporting::term::{self, Chars, Config};
+use serde::Serialize;
+
+/// Pages with source lines and underlines, as plain text.
+pub fn human(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    pages(sources, diagnostics, false)
+}
+
+/// The same with terminal colours.
+pub fn human_colored(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    pages(sources, diagnostics, true)
+}
+
+fn pages(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> String {
+    let config = Config { chars: Chars::box_drawing(), tab_width: 4, ..Config::default() };
+    let files = Shown::new(sources);
+    let mut text = String::new();
+    for diagnostic in diagnostics {
+        let page = page(diagnostic, sources);
+        let emitted = if color {
+            emit_colored(&config, &files, &page)
+        } else {
+            term::emit_into_string(&config, &files, &page)
+        };
+        match emitted {
+            Ok(page) => text.push_str(&page),
+            Err(_) => text.push_str(&short(sources, std::slice::from_ref(diagnostic))),
+        }
+    }
+    text
+}
+
+fn emit_colored(config: &Config, files: &Shown, page: &Page<usize>) -> Result<String, Error> {
+    let mut ansi = term::termcolor::Ansi::new(Vec::new());
+    let styles = term::Styles::default();
+    term::emit_to_write_style(&mut term::StylesWriter::new(&mut ansi, &styles), config, files, page)?;
+    Ok(String::from_utf8_lossy(&ansi.into_inner()).into_owned())
+}
+
+fn page(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
+    let label = |place: &Place| {
+        // A place in a file that was never read has nothing to underline.
+        sources.get(*place).map(|source| {
+            let end = source.text.len();
+            let range = place.span.range();
+            (place.file as usize, range.start.min(end)..range.end.min(end))
+        })
+    };
+    let mut page = Page::error().with_code(diagnostic.code).with_message(&diagnostic.message);
+    if let Some((file, range)) = label(&diagnostic.place) {
+        page = page.with_label(Label::primary(file, range).with_message(&diagnostic.label));
+    }
+    for (place, text) in &diagnostic.related {
+        if let Some((file, range)) = label(place) {
+            page = page.with_label(Label::secondary(file, range).with_message(text));
+        }
+    }
+    match &diagnostic.help {
+        Some(help) => page.with_note(format!("help: {help}")),
+        None => page,
+    }
+}
+
+/// One line each: `file:line:column: error[E0101]: message`.
+pub fn short(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    let mut text = String::new();
+    for diagnostic in diagnostics {
+        let at = Position::of(sources, diagnostic.place);
+        let (file, line, column) = (&at.file, at.line_start, at.column_start);
+        text.push_str(&format!("{file}:{line}:{column}: error[{}]: {}\n", diagnostic.code, diagnostic.message));
+    }
+    text
+}
+
+/// One JSON object a line, in the manner of rustc's `--error-format json`.
+pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    let mut text = String::new();
+    for diagnostic in diagnostics {
+        let message = Message::of(sources, diagnostic);
+        text.push_str(&serde_json::to_string(&message).unwrap_or_default());
+        text.push('\n');
+    }
+    text
+}
+
+#[derive(Serialize)]
+struct Message<'a> {
+    message: &'a str,
+    code: Code<'a>,
+    level: &'static str,
+    spans: Vec<JsonSpan>,
+    children: Vec<Child<'a>>,
+    rendered: String,
+}
+
+#[derive(Serialize)]
+struct Code<'a> {
+    code: &'a str,
+    explanation: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct JsonSpan {
+    #[serde(flatten)]
+    position: Position,
+    is_primary: bool,
+    label: String,
+}
+
+#[derive(Serialize)]
+struct Child<'a> {
+    message: &'a str,
+    level: &'static str,
+    spans: Vec<JsonSpan>,
+}
+
+impl<'a> Message<'a> {
+    fn of(sources: &Sources, diagnostic: &'a Diagnostic) -> Message<'a> {
+        let span = |place: Place, is_primary: bool, label: &str| JsonSpan {
+            position: Position::of(sources, place),
+            is_primary,
+            label: label.to_owned(),
+        };
+        let primary = span(diagnostic.place, true, &diagnostic.label);
+        let related = diagnostic.related.iter().map(|(place, label)| span(*place, false, label));
+        let help = diagnostic.help.iter().map(|help| Child { message: help, level: "help", spans: Vec::new() });
+        Message {
+            message: &diagnostic.message,
+            code: Code { code: diagnostic.code, explanation: super::codes::explain(diagnostic.code) },
+            level: "error",
+            spans: std::iter::once(primary).chain(related).collect(),
+            children: help.collect(),
+            rendered: human(sources, std::slice::from_ref(diagnostic)),
+        }
+    }
+}
+
+/// A place as editors want it: bytes from 0, lines and columns (in characters) from 1.
+#[derive(Serialize)]
+struct Position {
+    #[serde(rename = "file_name")]
+    file: String,
+    byte_start: u32,
+    byte_end: u32,
+    line_start: usize,
+    line_end: usize,
+    column_start: usize,
+    column_end: usize,
+}
+
+impl Position {
+    fn of(sources: &Sources, place: Place) -> Position {
+        let (file, text) = sources.get(place).map_or(("", ""), |s| (s.path.as_str(), &*s.text));
+        let (line_start, column_start) = line_and_column(text, place.span.start as usize);
+        let (line_end, column_end) = line_and_column(text, place.span.end as usize);
+        Position {
+            file: file.to_owned(),
+            byte_start: place.span.start,
+            byte_end: place.span.end,
+            line_start,
+            line_end,
+            column_start,
+            column_end,
+        }
+    }
+}
+
+fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset.min(text.len())).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+    (line, column)
+}
+
+/// The texts with the starts of their lines.
+struct Shown<'a> {
+    sources: &'a Sources,
+    lines: Vec<Vec<usize>>,
+}
+
+impl<'a> Shown<'a> {
+    fn new(sources: &'a Sources) -> Shown<'a> {
+        let starts = |text: &str| codespan_reporting::files::line_starts(text).collect();
+        Shown { sources, lines: sources.0.iter().map(|source| starts(&source.text)).collect() }
+    }
+}
+
+impl<'a> Files<'a> for Shown<'a> {
+    type FileId = usize;
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, id: usize) -> Result<&'a str, Error> {
+        self.sources.0.get(id).map(|source| source.path.as_str()).ok_or(Error::FileMissing)
+    }
+
+    fn source(&'a self, id: usize) -> Result<&'a str, Error> {
+        self.sources.0.get(id).map(|source| &*source.text).ok_or(Error::FileMissing)
+    }
+
+    fn line_index(&'a self, id: usize, byte: usize) -> Result<usize, Error> {
+        let lines = self.lines.get(id).ok_or(Error::FileMissing)?;
+        Ok(lines.binary_search(&byte).unwrap_or_else(|next| next.saturating_sub(1)))
+    }
+
+    fn line_range(&'a self, id: usize, line: usize) -> Result<std::ops::Range<usize>, Error> {
+        let lines = self.lines.get(id).ok_or(Error::FileMissing)?;
+        let max = lines.len().saturating_sub(1);
+        let start = *lines.get(line).ok_or(Error::LineTooLarge { given: line, max })?;
+        let end = lines.get(line + 1).copied().unwrap_or(self.source(id)?.len());
+        Ok(start..end)
+    }
+}

@@ -1,0 +1,116 @@
+//! Sentences about resources: what only opening the files can tell.
+//!
+//! They stand at the constructor call. The runtime finds them, all at once, when it loads.
+
+use super::{Diagnostic, Place};
+
+/// The file is not there.
+pub fn missing_file(place: Place, path: &str, near: Option<&str>) -> Diagnostic {
+    Diagnostic::new("E0501", place, format!("there is no file `{path}`"), "named here")
+        .maybe_help(near.map(|near| format!("is `{near}` meant?")))
+}
+
+/// The path leaves the program's folder, by its text or through a link.
+pub fn outside(place: Place, path: &str, link: bool) -> Diagnostic {
+    let message = if link {
+        format!("a link on the way to `{path}` leads out of the program's folder")
+    } else {
+        format!("`{path}` lies outside the program's folder")
+    };
+    Diagnostic::new("E0502", place, message, "a program reads its own folder only")
+        .help("copy the file into the folder, or allow it with --allow-outside")
+}
+
+/// A folder, or something that the system refuses to read.
+pub fn unreadable_file(place: Place, path: &str, reason: &str) -> Diagnostic {
+    Diagnostic::new("E0503", place, format!("`{path}` can't be read"), reason)
+}
+
+/// A file of too many bytes.
+pub fn file_too_large(place: Place, path: &str, limit: u64) -> Diagnostic {
+    Diagnostic::new("E0504", place, format!("`{path}` has more than {} MiB", limit >> 20), "a file of this size is not opened")
+        .help("save the picture smaller, or with compression")
+}
+
+/// Bytes that are no whole picture.
+pub fn not_a_picture(place: Place, path: &str, reason: &str) -> Diagnostic {
+    Diagnostic::new("E0505", place, format!("`{path}` can't be read as a picture"), reason)
+        .help("PNG, JPEG and TGA pictures with 8 or 16 bits a channel are read")
+}
+
+/// A picture that claims, or has, more texels than are decoded.
+pub fn picture_too_large(place: Place, path: &str, size: [u32; 2], limit: u32) -> Diagnostic {
+    let [width, height] = size;
+    let label = format!("at most {limit}×{limit}, and 1 GiB of texels, are decoded");
+    Diagnostic::new("E0506", place, format!("`{path}` has {width}×{height} texels"), label)
+}
+
+/// A grid that cuts through texels.
+pub fn uneven_grid(place: Place, path: &str, size: [u32; 2], grid: [u32; 2]) -> Diagnostic {
+    let [width, height] = size;
+    let [columns, rows] = grid;
+    let fit = |texels: u32, cells: u32| (texels.max(cells) / cells.max(1)) * cells;
+    Diagnostic::new(
+        "E0507",
+        place,
+        format!("a grid of {columns}×{rows} does not divide `{path}`, which has {width}×{height} texels"),
+        "every pattern must have the same whole number of texels",
+    )
+    .help(format!("crop the picture to {}×{}, or change `grid`", fit(width, columns), fit(height, rows)))
+}
+
+/// Files of one resource that differ in size.
+pub fn sizes_differ(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2])) -> Diagnostic {
+    let (path, [width, height]) = first;
+    let (odd, [odd_width, odd_height]) = other;
+    Diagnostic::new(
+        "E0508",
+        place,
+        format!("`{odd}` has {odd_width}×{odd_height} texels, but `{path}` has {width}×{height}"),
+        "patterns of one resource are layers of one texture",
+    )
+    .help(format!("scale `{odd}` to {width}×{height}"))
+}
+
+/// More layers than every GPU has.
+pub fn too_many_layers(place: Place, layers: u64, limit: u32) -> Diagnostic {
+    Diagnostic::new("E0509", place, format!("{layers} patterns are too many"), format!("a texture has at most {limit} layers"))
+        .help("spread them over several resources, and choose between these with `if`")
+}
+
+/// Sizes or numbers in the constructor's arguments that make no table.
+pub fn no_table(place: Place, message: impl Into<String>, reason: impl Into<String>) -> Diagnostic {
+    Diagnostic::new("E0510", place, message, reason)
+}
+
+/// A texture with a side longer than every GPU has.
+pub fn texture_too_large(place: Place, path: &str, size: [u32; 2], limit: u32) -> Diagnostic {
+    let [width, height] = size;
+    Diagnostic::new(
+        "E0511",
+        place,
+        format!("a texture of `{path}` would have {width}×{height} texels"),
+        format!("a texture has at most {limit} texels along a side"),
+    )
+    .help("reduce the picture, or cut it into `patterns`")
+}
+
+/// A texture of too many bytes.
+pub fn too_many_bytes(place: Place, bytes: u64, limit: u64) -> Diagnostic {
+    let mebibytes = bytes.div_ceil(1 << 20);
+    let label = format!("at most {} MiB a resource", limit >> 20);
+    Diagnostic::new("E0512", place, format!("the textures of this resource take {mebibytes} MiB"), label)
+        .help("reduce the pictures, or use fewer")
+}
+
+/// A picture with colours where only grey has a meaning.
+pub fn not_grey(place: Place, path: &str, at: [u32; 2]) -> Diagnostic {
+    let [x, y] = at;
+    Diagnostic::new(
+        "E0513",
+        place,
+        format!("`{path}` is not grey: the texel at column {x}, row {y} has a colour"),
+        "an integer map is read from a grey picture",
+    )
+    .help("save it as a grey picture")
+}

@@ -1,0 +1,165 @@
+//! The texgraph compiler: a texture graph written as text becomes a shader and its manifest.
+//!
+//! ```text
+//! text ──module──▶ modules ──check──▶ graph ──pass──▶ smaller graph ──lower──▶ naga ──emit──▶ WGSL
+//!                                                        └──contract──▶ manifest
+//! ```
+//!
+//! [`compile`] reads as that picture. No file is opened here: a host hands text in through a
+//! [`module::Loader`], and gets back plain data.
+
+mod check;
+mod contract;
+pub mod diagnostic;
+pub mod emit;
+pub mod graph;
+pub mod intrinsic;
+pub mod library;
+pub mod lower;
+pub mod manifest;
+pub mod module;
+mod naming;
+pub mod pass;
+pub mod resource;
+
+pub use diagnostic::Diagnostic;
+pub use library::Library;
+pub use manifest::{Form, Manifest};
+
+use crate::check::Checker;
+use crate::diagnostic::{Place, limits};
+use crate::graph::Graph;
+use crate::module::{Loader, Modules, Sources};
+
+/// What to compile, and how to wrap it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// The texture; the file's first when none.
+    pub texture: Option<String>,
+    /// The outputs wanted; all when none. Work that only others need is left out.
+    pub outputs: Option<Vec<String>>,
+    /// How the shader is wrapped.
+    pub form: Form,
+    /// `@group` of everything that is bound.
+    pub group: u32,
+    /// The first `@binding`; the others follow.
+    pub first_binding: u32,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { texture: None, outputs: None, form: Form::Complete, group: 0, first_binding: 0 }
+    }
+}
+
+/// A compiled texture.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// What it computes, after all passes; the CPU renderer evaluates this.
+    pub graph: Graph,
+    /// What a host must allocate and set.
+    pub manifest: Manifest,
+    /// The shader.
+    pub wgsl: String,
+}
+
+/// What is wrong with a program, and the texts to show it in.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// All texts that places point into.
+    pub sources: Sources,
+    /// All errors, in source order.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// A program with the texts its places point into.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// The program.
+    pub program: Program,
+    /// All texts.
+    pub sources: Sources,
+}
+
+/// Compiles one texture of a file.
+///
+/// # Errors
+/// Every error of the file and what it imports, as far as the texture needs it.
+pub fn compile(library: &Library, main: &str, loader: &dyn Loader, options: &Options) -> Result<Compiled, Failure> {
+    let modules = load(library, main, loader)?;
+    let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
+    let (graph, label) = checked(library, &modules, options).map_err(fail)?;
+    let fail = |diagnostic| Failure { sources: modules.sources.clone(), diagnostics: vec![diagnostic] };
+    let graph = pass::run(graph).map_err(fail)?;
+    let manifest = contract::manifest(&graph, &label, options);
+    let wgsl = emit::wgsl(&lower::lower(&graph, &manifest)).map_err(|why| fail(limits::bug(main_place(&modules), &why)))?;
+    Ok(Compiled { program: Program { graph, manifest, wgsl }, sources: modules.sources })
+}
+
+/// Checks a whole file: every texture, every node, and what it imports. The texts are returned in
+/// either case.
+///
+/// # Errors
+/// Every error, in source order.
+pub fn check(library: &Library, main: &str, loader: &dyn Loader) -> Result<Sources, Failure> {
+    let modules = load(library, main, loader)?;
+    let mut checker = Checker::new(library, &modules.modules);
+    checker.declare();
+    checker.everything();
+    let diagnostics = checker.into_diagnostics();
+    if diagnostics.is_empty() {
+        Ok(modules.sources)
+    } else {
+        Err(Failure { sources: modules.sources, diagnostics })
+    }
+}
+
+/// The names of a file's textures, in source order.
+///
+/// # Errors
+/// The file can't be read or parsed.
+pub fn textures(library: &Library, main: &str, loader: &dyn Loader) -> Result<Vec<String>, Failure> {
+    let modules = load(library, main, loader)?;
+    let main = modules.modules.last().map(|module| check::textures(&module.tree));
+    Ok(main.unwrap_or_default().into_iter().map(str::to_owned).collect())
+}
+
+fn load(library: &Library, main: &str, loader: &dyn Loader) -> Result<Modules, Failure> {
+    module::load(main, loader, library).map_err(|(sources, diagnostics)| Failure { sources, diagnostics })
+}
+
+fn main_place(modules: &Modules) -> Place {
+    Place { file: modules.modules.last().map_or(0, |module| module.file), ..Place::default() }
+}
+
+/// The graph of the chosen texture with its documentation.
+fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<(Graph, String), Vec<Diagnostic>> {
+    let mut checker = Checker::new(library, &modules.modules);
+    checker.declare();
+    let key = checker.texture(options.texture.as_deref());
+    let (true, Some(key)) = (checker.is_fine(), key) else {
+        let diagnostics = checker.into_diagnostics();
+        let silent = diagnostics.is_empty();
+        let bug = limits::bug(main_place(modules), "compiling stopped without saying why");
+        return Err(if silent { vec![bug] } else { diagnostics });
+    };
+    let label = checker.doc(&key);
+    let Some(mut graph) = checker.into_graph(&key) else {
+        return Err(vec![limits::bug(main_place(modules), "a checked texture has no graph")]);
+    };
+    choose_outputs(&mut graph, options, main_place(modules)).map_err(|diagnostic| vec![diagnostic])?;
+    Ok((graph, label))
+}
+
+/// Leaves only the outputs that are wanted.
+fn choose_outputs(graph: &mut Graph, options: &Options, place: Place) -> Result<(), Diagnostic> {
+    let (Some(wanted), Some(entry)) = (&options.outputs, graph.functions.last_mut()) else { return Ok(()) };
+    for name in wanted {
+        if !entry.outputs.iter().any(|(slot, _)| slot.name == *name) {
+            let known: Vec<String> = entry.outputs.iter().map(|(slot, _)| format!("`{}`", slot.name)).collect();
+            return Err(limits::no_such_texture_output(place, name, &known.join(", ")));
+        }
+    }
+    entry.outputs.retain(|(slot, _)| wanted.contains(&slot.name));
+    Ok(())
+}

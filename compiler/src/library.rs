@@ -1,0 +1,135 @@
+//! The standard library: `std/*.tex`, parsed once and shared by every compilation.
+
+use crate::intrinsic::Intrinsic;
+use crate::module::{Module, Source, Sources};
+use crate::resource::KINDS;
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+use texgraph_grammar::syntax::{ItemKind, Signature};
+
+/// The files, one per technique.
+const FILES: &[(&str, &str)] = &[
+    ("std/tiling.tex", include_str!("../std/tiling.tex")),
+    ("std/resources.tex", include_str!("../std/resources.tex")),
+    ("std/color.tex", include_str!("../std/color.tex")),
+];
+
+/// What a name before `(` may mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Callable {
+    /// A node or texture: module and item.
+    Node(usize, usize),
+    /// A row of the intrinsic table.
+    Intrinsic(Intrinsic),
+    /// A row of the table of resource kinds.
+    Constructor(usize),
+}
+
+/// The library and the tables, indexed by name.
+#[derive(Clone, Debug)]
+pub struct Library {
+    sources: Sources,
+    modules: Vec<Module>,
+    callables: FxHashMap<String, Vec<Callable>>,
+    /// Signatures of the intrinsics, by row, then of the constructors.
+    signatures: Vec<Signature>,
+}
+
+impl Library {
+    /// Parses the library's files and the tables' signatures.
+    ///
+    /// # Errors
+    /// A file of the library or a row of a table is broken, with a sentence that says which: a bug
+    /// of texgraph.
+    pub fn standard() -> Result<Library, String> {
+        Library::from_files(FILES)
+    }
+
+    fn from_files(files: &[(&str, &str)]) -> Result<Library, String> {
+        let mut library = Library {
+            sources: Sources::default(),
+            modules: Vec::new(),
+            callables: FxHashMap::default(),
+            signatures: Vec::new(),
+        };
+        for (path, text) in files {
+            library.add_file(path, text)?;
+        }
+        library.add_tables()?;
+        Ok(library)
+    }
+
+    fn add_file(&mut self, path: &str, text: &str) -> Result<(), String> {
+        let tree = texgraph_grammar::parse(text).map_err(|errors| {
+            errors.first().map_or_else(String::new, |e| format!("{path}: {e} at byte {}", e.span.start))
+        })?;
+        let module = self.modules.len();
+        for (item, declared) in tree.items.iter().enumerate() {
+            if let ItemKind::Node(node) = &declared.kind {
+                let named = self.callables.entry(node.name.text.clone()).or_default();
+                named.push(Callable::Node(module, item));
+            }
+        }
+        self.sources.0.push(Source { path: path.to_owned(), text: text.into() });
+        self.modules.push(Module {
+            file: module as u32,
+            path: path.to_owned(),
+            tree: Arc::new(tree),
+            imports: Vec::new(),
+        });
+        Ok(())
+    }
+
+    fn add_tables(&mut self) -> Result<(), String> {
+        for intrinsic in Intrinsic::all() {
+            let row = intrinsic.row();
+            self.add_signature(row.name, row.signature)?;
+            if intrinsic.is_callable() {
+                let named = self.callables.entry(row.name.to_owned()).or_default();
+                named.push(Callable::Intrinsic(intrinsic));
+            }
+        }
+        for (i, kind) in KINDS.iter().enumerate() {
+            self.add_signature(kind.name, kind.constructor)?;
+            self.callables.entry(kind.name.to_owned()).or_default().push(Callable::Constructor(i));
+        }
+        Ok(())
+    }
+
+    fn add_signature(&mut self, name: &str, text: &str) -> Result<(), String> {
+        let signature = texgraph_grammar::parse_signature(text).map_err(|e| format!("{name}: {text}: {e}"))?;
+        self.signatures.push(signature);
+        Ok(())
+    }
+
+    /// Its texts.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// Its modules.
+    pub fn modules(&self) -> &[Module] {
+        &self.modules
+    }
+
+    /// What a name may mean, in order of preference.
+    pub fn callables(&self, name: &str) -> &[Callable] {
+        self.callables.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// Every name that can be called, in order.
+    pub fn callable_names(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.callables.keys().map(String::as_str).filter(|n| !n.starts_with('_')).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// The signature of an intrinsic or a constructor; none for nodes, which have their own head.
+    pub fn signature(&self, callable: Callable) -> Option<&Signature> {
+        match callable {
+            Callable::Node(..) => None,
+            Callable::Intrinsic(intrinsic) => self.signatures.get(intrinsic.index()),
+            Callable::Constructor(kind) => self.signatures.get(Intrinsic::all().count() + kind),
+        }
+    }
+}

@@ -1,0 +1,320 @@
+//! One operation as one expression (or a few).
+
+use super::Lowering;
+use super::function::{Body, Frame, has_sampler};
+use super::types::{numeric, scalar, size};
+use crate::graph::{Axis, Constant, Level, Operation, Scalar, Type, Value};
+use crate::intrinsic::{Form, Intrinsic};
+use naga::{BinaryOperator, Expression, Handle, Literal, MathFunction, ScalarKind, SwizzleComponent};
+
+impl Lowering<'_> {
+    pub(super) fn operation(
+        &mut self,
+        body: &mut Body,
+        frame: &mut Frame,
+        value: Value,
+        operation: &Operation,
+    ) -> Handle<Expression> {
+        match operation {
+            Operation::Constant(constant) => self.constant(body, frame, constant),
+            Operation::Input(_) => frame.get(value),
+            Operation::Param(id) => frame.params[id],
+            Operation::View(id) => frame.views[id],
+            Operation::Builtin(intrinsic, arguments) => self.builtin(body, frame, *intrinsic, arguments),
+            Operation::Compose(parts) => self.compose(body, frame, value, parts),
+            Operation::Extract(vector, i) => {
+                let base = frame.get(*vector);
+                body.add(Expression::AccessIndex { base, index: u32::from(*i) })
+            }
+            Operation::Select(condition, yes, no) => {
+                let (condition, accept, reject) = (frame.get(*condition), frame.get(*yes), frame.get(*no));
+                body.add(Expression::Select { condition, accept, reject })
+            }
+            Operation::Sample { view, coordinate, layer, level } => {
+                self.sample(body, frame, *view, *coordinate, *layer, level)
+            }
+            Operation::Texel { view, index, layer } => {
+                let level = body.literal(Literal::I32(0));
+                body.add(Expression::ImageLoad {
+                    image: frame.get(*view),
+                    coordinate: frame.get(*index),
+                    array_index: layer.map(|v| frame.get(v)),
+                    sample: None,
+                    level: Some(level),
+                })
+            }
+            Operation::Size(view) => {
+                let query = naga::ImageQuery::Size { level: None };
+                let size = body.add(Expression::ImageQuery { image: frame.get(*view), query });
+                body.convert(size, ScalarKind::Sint)
+            }
+            Operation::Call(callee, arguments) => self.call(body, frame, value, callee.0 as usize, arguments),
+            Operation::Output(call, i) => match frame.function.operation(*call) {
+                Operation::Call(callee, _) if self.functions[callee.0 as usize].is_struct => {
+                    body.add(Expression::AccessIndex { base: frame.get(*call), index: *i })
+                }
+                _ => frame.get(*call),
+            },
+            Operation::Derivative(v, axis) => {
+                let axis = match axis {
+                    Axis::X => naga::DerivativeAxis::X,
+                    Axis::Y => naga::DerivativeAxis::Y,
+                };
+                let ctrl = naga::DerivativeControl::None;
+                body.add(Expression::Derivative { axis, ctrl, expr: frame.get(*v) })
+            }
+        }
+    }
+
+    fn constant(&mut self, body: &mut Body, frame: &mut Frame, constant: &Constant) -> Handle<Expression> {
+        if let Some(handle) = frame.literals.get(constant) {
+            return *handle;
+        }
+        let width = constant.width();
+        let same = constant.bits().iter().all(|bits| *bits == constant.bits()[0]);
+        let literal = |i: usize| match constant.scalar() {
+            Scalar::Float => Literal::F32(constant.float(i)),
+            Scalar::Int => Literal::I32(constant.int(i)),
+            Scalar::Bool => Literal::Bool(constant.bool(i)),
+        };
+        let handle = if width == 1 {
+            body.literal(literal(0))
+        } else if same {
+            let value = body.literal(literal(0));
+            body.add(Expression::Splat { size: size(width), value })
+        } else {
+            let components = (0..usize::from(width)).map(|i| body.literal(literal(i))).collect();
+            let ty = self.types.get(&mut self.module.types, constant.ty());
+            body.add(Expression::Compose { ty, components })
+        };
+        frame.literals.insert(*constant, handle);
+        handle
+    }
+
+    /// Runs of components of one vector are written as a swizzle.
+    fn compose(&mut self, body: &mut Body, frame: &mut Frame, value: Value, parts: &[Value]) -> Handle<Expression> {
+        let width = parts.len() as u8;
+        if parts.iter().all(|part| part == &parts[0]) {
+            let value = frame.get(parts[0]);
+            return body.add(Expression::Splat { size: size(width), value });
+        }
+        let mut components: Vec<Handle<Expression>> = Vec::new();
+        let mut rest = parts;
+        while let Some(first) = rest.first() {
+            let run = self.run(frame, rest);
+            components.push(match frame.function.operation(*first) {
+                Operation::Extract(vector, _) if run.len() > 1 => self.swizzle(body, frame, *vector, &run),
+                _ => frame.get(*first),
+            });
+            rest = &rest[run.len().max(1)..];
+        }
+        if let [whole] = components.as_slice() {
+            return *whole;
+        }
+        let ty = self.types.get(&mut self.module.types, frame.function.ty(value));
+        body.add(Expression::Compose { ty, components })
+    }
+
+    /// The components of the first part's vector that follow one another.
+    fn run(&self, frame: &Frame, parts: &[Value]) -> Vec<u8> {
+        let Operation::Extract(vector, _) = frame.function.operation(parts[0]) else { return Vec::new() };
+        let component = |part: &Value| match frame.function.operation(*part) {
+            Operation::Extract(of, i) if of == vector && !frame.function.names.contains_key(part) => Some(*i),
+            _ => None,
+        };
+        parts.iter().map_while(component).collect()
+    }
+
+    fn swizzle(&mut self, body: &mut Body, frame: &Frame, vector: Value, run: &[u8]) -> Handle<Expression> {
+        let base = frame.get(vector);
+        if usize::from(frame.function.ty(vector).width()) == run.len() && run.iter().enumerate().all(|(i, c)| i == usize::from(*c)) {
+            return base;
+        }
+        let mut pattern = [SwizzleComponent::X; 4];
+        for (slot, i) in pattern.iter_mut().zip(run) {
+            *slot = SwizzleComponent::from_index(u32::from(*i));
+        }
+        body.add(Expression::Swizzle { size: size(run.len() as u8), vector: base, pattern })
+    }
+
+    fn sample(
+        &mut self,
+        body: &mut Body,
+        frame: &Frame,
+        view: Value,
+        coordinate: Value,
+        layer: Option<Value>,
+        level: &Level,
+    ) -> Handle<Expression> {
+        let image = frame.get(view);
+        let level = match level {
+            Level::Gradient(x, y) => naga::SampleLevel::Gradient { x: frame.get(*x), y: frame.get(*y) },
+            Level::Level(l) => naga::SampleLevel::Exact(frame.get(*l)),
+            Level::Auto => naga::SampleLevel::Zero,
+        };
+        body.add(Expression::ImageSample {
+            image,
+            sampler: frame.samplers.get(&image).copied().unwrap_or(image),
+            gather: None,
+            coordinate: frame.get(coordinate),
+            array_index: layer.map(|v| frame.get(v)),
+            offset: None,
+            level,
+            depth_ref: None,
+            clamp_to_edge: false,
+        })
+    }
+
+    fn call(
+        &mut self,
+        body: &mut Body,
+        frame: &mut Frame,
+        value: Value,
+        callee: usize,
+        arguments: &[Value],
+    ) -> Handle<Expression> {
+        let callee = &self.functions[callee];
+        let mut all = Vec::new();
+        let mut push = |handle: Handle<Expression>, ty: Type| {
+            all.push(handle);
+            if has_sampler(ty) {
+                all.extend(frame.samplers.get(&handle));
+            }
+        };
+        arguments.iter().for_each(|v| push(frame.get(*v), frame.function.ty(*v)));
+        for id in &callee.captures.params {
+            push(frame.params[id], Type::FLOAT);
+        }
+        for id in &callee.captures.views {
+            push(frame.views[id], Type::View(self.graph.views[id.0 as usize].view));
+        }
+        let (result, number) = body.call(callee.handle, all);
+        let wish = if callee.is_struct { None } else { self.author_of(frame, value) };
+        let name = frame.scope.name(&wish.unwrap_or_else(|| format!("{}_of", callee.name.trim_start_matches('_'))));
+        frame.results.insert(number, name);
+        result
+    }
+
+    /// What the author calls the only output of a call.
+    fn author_of(&self, frame: &Frame, call: Value) -> Option<String> {
+        let output = Operation::Output(call, 0);
+        frame.function.names.iter().find(|(v, _)| *frame.function.operation(**v) == output).map(|(_, name)| name.clone())
+    }
+
+    fn builtin(&mut self, body: &mut Body, frame: &mut Frame, intrinsic: Intrinsic, arguments: &[Value]) -> Handle<Expression> {
+        let operands: Vec<Handle<Expression>> = arguments.iter().map(|v| frame.get(*v)).collect();
+        let ty = arguments.first().map_or(Type::FLOAT, |v| frame.function.ty(*v));
+        match intrinsic.row().form {
+            Form::Operator(symbol) => self.operator(body, symbol, ty, &operands),
+            Form::Function(name) => body.add(Expression::Math {
+                fun: math(name),
+                arg: operands[0],
+                arg1: operands.get(1).copied(),
+                arg2: operands.get(2).copied(),
+                arg3: None,
+            }),
+            Form::Convert => {
+                let kind = if ty.is_float() { ScalarKind::Sint } else { ScalarKind::Float };
+                body.convert(operands[0], kind)
+            }
+            Form::All if ty.width() == 1 => operands[0],
+            Form::All => {
+                body.add(Expression::Relational { fun: naga::RelationalFunction::All, argument: operands[0] })
+            }
+            Form::Choose => body.add(Expression::Select {
+                condition: operands[0],
+                accept: operands[1],
+                reject: operands[2],
+            }),
+            Form::Helper(helper) => {
+                let function = self.helper(helper);
+                let (result, number) = body.call(function, operands);
+                frame.results.insert(number, frame.scope.name("random"));
+                result
+            }
+            Form::Expand(_) => unreachable!("expanded before lowering"),
+        }
+    }
+
+    fn operator(&mut self, body: &mut Body, symbol: &str, ty: Type, operands: &[Handle<Expression>]) -> Handle<Expression> {
+        if let [operand] = operands {
+            let op = if symbol == "!" { naga::UnaryOperator::LogicalNot } else { naga::UnaryOperator::Negate };
+            return body.add(Expression::Unary { op, expr: *operand });
+        }
+        let single = ty.width() == 1 && ty.scalar() == Some(Scalar::Bool);
+        let op = match symbol {
+            "+" => BinaryOperator::Add,
+            "-" => BinaryOperator::Subtract,
+            "*" => BinaryOperator::Multiply,
+            "/" => BinaryOperator::Divide,
+            "<" => BinaryOperator::Less,
+            "<=" => BinaryOperator::LessEqual,
+            ">" => BinaryOperator::Greater,
+            ">=" => BinaryOperator::GreaterEqual,
+            "==" => BinaryOperator::Equal,
+            "!=" => BinaryOperator::NotEqual,
+            "&" if single => BinaryOperator::LogicalAnd,
+            "|" if single => BinaryOperator::LogicalOr,
+            "&" => BinaryOperator::And,
+            "|" => BinaryOperator::InclusiveOr,
+            "^" => BinaryOperator::ExclusiveOr,
+            "<<" => BinaryOperator::ShiftLeft,
+            _ => BinaryOperator::ShiftRight,
+        };
+        let right = match op {
+            // Shift counts are unsigned in the shader language.
+            BinaryOperator::ShiftLeft | BinaryOperator::ShiftRight => body.convert(operands[1], ScalarKind::Uint),
+            _ => operands[1],
+        };
+        body.binary(op, operands[0], right)
+    }
+
+    /// A float as a colour of four: what the complete form writes.
+    pub(super) fn widened(&mut self, body: &mut Body, value: Handle<Expression>, ty: Type) -> Handle<Expression> {
+        let width = ty.width();
+        let value = if ty.is_float() { value } else { body.convert(value, ScalarKind::Float) };
+        if width == 4 {
+            return value;
+        }
+        let zero = body.literal(Literal::F32(0.0));
+        let one = body.literal(Literal::F32(1.0));
+        let components = match width {
+            1 => vec![value, value, value, one],
+            2 => vec![value, zero, one],
+            _ => vec![value, one],
+        };
+        let ty = super::Types::of(&mut self.module.types, numeric(scalar(Scalar::Float), 4));
+        body.add(Expression::Compose { ty, components })
+    }
+}
+
+/// The shader language's function of that name.
+fn math(name: &str) -> MathFunction {
+    match name {
+        "floor" => MathFunction::Floor,
+        "ceil" => MathFunction::Ceil,
+        "round" => MathFunction::Round,
+        "fract" => MathFunction::Fract,
+        "abs" => MathFunction::Abs,
+        "sign" => MathFunction::Sign,
+        "min" => MathFunction::Min,
+        "max" => MathFunction::Max,
+        "mix" => MathFunction::Mix,
+        "sin" => MathFunction::Sin,
+        "cos" => MathFunction::Cos,
+        "tan" => MathFunction::Tan,
+        "asin" => MathFunction::Asin,
+        "acos" => MathFunction::Acos,
+        "atan2" => MathFunction::Atan2,
+        "exp" => MathFunction::Exp,
+        "exp2" => MathFunction::Exp2,
+        "log" => MathFunction::Log,
+        "log2" => MathFunction::Log2,
+        "pow" => MathFunction::Pow,
+        "sqrt" => MathFunction::Sqrt,
+        "dot" => MathFunction::Dot,
+        "length" => MathFunction::Length,
+        "cross" => MathFunction::Cross,
+        _ => unreachable!("a row of the intrinsic table names a function that is not lowered: {name}"),
+    }
+}

@@ -1,0 +1,270 @@
+//! The thin wrapper around a texture's plain function: where globals are read.
+
+use super::function::Body;
+use super::types::{Types, numeric, scalar};
+use super::{Lowering, Member};
+use crate::graph::{ParamId, Scalar, Type, ViewId};
+use crate::manifest::{Form, Source};
+use crate::naming::{Scope, camel_case};
+use naga::{AddressSpace, Binding, Expression, GlobalVariable, Handle, Literal, Span, Statement};
+use rustc_hash::FxHashMap;
+
+/// The globals of the module.
+struct Globals {
+    /// The uniform block, and for each of its members by name the index and type.
+    block: Option<(Handle<GlobalVariable>, Vec<(String, Type)>)>,
+    views: FxHashMap<ViewId, (Handle<GlobalVariable>, Option<Handle<GlobalVariable>>)>,
+}
+
+impl Lowering<'_> {
+    /// Makes the wrapper that the manifest asks for.
+    pub(super) fn wrap(&mut self, name: &str) {
+        let globals = self.globals();
+        match self.manifest.form {
+            Form::Complete => self.entry_point(name, &globals),
+            Form::Library => self.library(name, &globals),
+        }
+    }
+
+    /// Declares the uniform block, the textures and the samplers.
+    fn globals(&mut self) -> Globals {
+        let block = self.uniform_block();
+        let mut views = FxHashMap::default();
+        for id in crate::contract::reads(self.graph).views {
+            let view = &self.graph.views[id.0 as usize];
+            let resource = &self.manifest.resources[view.resource as usize];
+            let Some(texture) = resource.textures.iter().find(|t| t.field == view.field) else { continue };
+            let ty = self.types.get(&mut self.module.types, Type::View(view.view));
+            let variable = self.global(&texture.name, AddressSpace::Handle, ty, texture.group, texture.binding);
+            let sampler = texture.sampler.as_ref().map(|sampler| {
+                let ty = Types::sampler(&mut self.module.types);
+                self.global(&sampler.name, AddressSpace::Handle, ty, sampler.group, sampler.binding)
+            });
+            views.insert(id, (variable, sampler));
+        }
+        Globals { block, views }
+    }
+
+    fn global(
+        &mut self,
+        name: &str,
+        space: AddressSpace,
+        ty: Handle<naga::Type>,
+        group: u32,
+        binding: u32,
+    ) -> Handle<GlobalVariable> {
+        let variable = GlobalVariable {
+            name: Some(self.names.placeholder(name.to_owned())),
+            space,
+            binding: Some(naga::ResourceBinding { group, binding }),
+            ty,
+            init: None,
+            memory_decorations: naga::MemoryDecorations::empty(),
+        };
+        self.module.global_variables.append(variable, Span::UNDEFINED)
+    }
+
+    /// The params that are read, then the inputs that are the same for a draw, in offset order.
+    fn uniform_block(&mut self) -> Option<(Handle<GlobalVariable>, Vec<(String, Type)>)> {
+        let uniform = self.manifest.uniform.as_ref()?;
+        let mut members: Vec<(u32, String, Type)> = Vec::new();
+        for (param, public) in self.graph.params.iter().zip(&self.manifest.params) {
+            members.extend(public.offset.map(|offset| (offset, param.name.clone(), param.ty)));
+        }
+        let entry = self.graph.function(self.graph.entry());
+        for (slot, public) in entry.inputs.iter().zip(&self.manifest.inputs) {
+            if let Source::Uniform(offset) = public.source {
+                members.push((offset, slot.name.clone(), slot.ty));
+            }
+        }
+        members.sort_by_key(|(offset, ..)| *offset);
+        let fields = members
+            .iter()
+            .map(|(_, name, ty)| {
+                // A bool can't stand in a uniform block.
+                let kind = if ty.scalar() == Some(Scalar::Bool) { naga::Scalar::U32 } else { scalar_of(*ty) };
+                let ty = Types::of(&mut self.module.types, numeric(kind, ty.width()));
+                Member { name: name.clone(), ty, binding: None }
+            })
+            .collect();
+        let ty = self.structure(&camel_case(&uniform.name), fields);
+        let variable = self.global(&uniform.name, AddressSpace::Uniform, ty, uniform.group, uniform.binding);
+        Some((variable, members.into_iter().map(|(_, name, ty)| (name, ty)).collect()))
+    }
+
+    /// A member of the uniform block, loaded.
+    fn member(&mut self, body: &mut Body, globals: &Globals, scope: &mut Scope, name: &str) -> Handle<Expression> {
+        let Some((variable, members)) = &globals.block else { unreachable!("a param is read from a block") };
+        let index = members.iter().position(|(member, _)| member == name).unwrap_or(0);
+        let ty = members[index].1;
+        let base = body.add(Expression::GlobalVariable(*variable));
+        let pointer = body.add(Expression::AccessIndex { base, index: index as u32 });
+        let loaded = body.add(Expression::Load { pointer });
+        body.name(loaded, self.names.placeholder(scope.name(name)));
+        if ty.scalar() != Some(Scalar::Bool) {
+            return loaded;
+        }
+        let zero = body.literal(Literal::U32(0));
+        body.binary(naga::BinaryOperator::NotEqual, loaded, zero)
+    }
+
+    /// Calls the plain function: inputs as given, the rest from globals.
+    fn call_plain(
+        &mut self,
+        body: &mut Body,
+        globals: &Globals,
+        scope: &mut Scope,
+        inputs: Vec<Handle<Expression>>,
+    ) -> (Handle<Expression>, FxHashMap<u32, String>) {
+        let mut arguments = inputs;
+        let Some(entry) = self.functions.last() else { unreachable!("a graph has an entry") };
+        let (handle, captures) = (entry.handle, entry.captures.clone());
+        let params: Vec<ParamId> = captures.params.iter().copied().collect();
+        for id in params {
+            let name = self.graph.params[id.0 as usize].name.clone();
+            arguments.push(self.member(body, globals, scope, &name));
+        }
+        for id in &captures.views {
+            let (texture, sampler) = globals.views[id];
+            for variable in std::iter::once(texture).chain(sampler) {
+                arguments.push(body.add(Expression::GlobalVariable(variable)));
+            }
+        }
+        let (result, number) = body.call(handle, arguments);
+        let name = scope.name("result");
+        (result, [(number, name)].into_iter().collect())
+    }
+
+    /// `@fragment fn NAME(@location(0) uv: vec2<f32>) -> …`, every output widened to four floats.
+    fn entry_point(&mut self, name: &str, globals: &Globals) {
+        let entry = self.graph.function(self.graph.entry());
+        let mut scope = Scope::inside(&self.prefix);
+        let mut function = naga::Function::default();
+        let mut varying = Vec::new();
+        for (slot, public) in entry.inputs.iter().zip(&self.manifest.inputs) {
+            let Source::Varying(location) = public.source else {
+                varying.push(None);
+                continue;
+            };
+            let ty = self.types.get(&mut self.module.types, slot.ty);
+            varying.push(Some(function.arguments.len() as u32));
+            let placeholder = self.names.placeholder(scope.name(&slot.name));
+            let binding = Some(at_location(location, slot.ty.is_float()));
+            function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding });
+        }
+        let floats = Types::of(&mut self.module.types, numeric(naga::Scalar::F32, 4));
+        let several = entry.outputs.len() > 1;
+        let result = if several {
+            let members = entry.outputs.iter().enumerate().map(|(i, (slot, _))| Member {
+                name: slot.name.clone(),
+                ty: floats,
+                binding: Some(at_location(i as u32, true)),
+            });
+            let name = camel_case(&format!("{}_targets", self.prefix));
+            self.structure(&name, members.collect())
+        } else {
+            floats
+        };
+        let binding = (!several).then(|| at_location(0, true));
+        function.result = Some(naga::FunctionResult { ty: result, binding });
+        let mut body = Body::new(&mut function);
+        let inputs: Vec<Handle<Expression>> = entry
+            .inputs
+            .iter()
+            .zip(varying)
+            .map(|(slot, argument)| match argument {
+                Some(argument) => body.add(Expression::FunctionArgument(argument)),
+                None => self.member(&mut body, globals, &mut scope, &slot.name),
+            })
+            .collect();
+        let (value, results) = self.call_plain(&mut body, globals, &mut scope, inputs);
+        let outputs: Vec<Handle<Expression>> = entry
+            .outputs
+            .iter()
+            .enumerate()
+            .map(|(i, (slot, _))| {
+                let value = if several {
+                    body.add(Expression::AccessIndex { base: value, index: i as u32 })
+                } else {
+                    value
+                };
+                self.widened(&mut body, value, slot.ty)
+            })
+            .collect();
+        let value = match outputs.as_slice() {
+            [single] => *single,
+            _ => body.add(Expression::Compose { ty: result, components: outputs }),
+        };
+        body.finish(Statement::Return { value: Some(value) });
+        self.results.push(results);
+        self.module.entry_points.push(naga::EntryPoint {
+            name: self.names.placeholder(name.to_owned()),
+            stage: naga::ShaderStage::Fragment,
+            early_depth_test: None,
+            workgroup_size: [0; 3],
+            workgroup_size_overrides: None,
+            function,
+            mesh_info: None,
+            task_payload: None,
+            incoming_ray_payload: None,
+        });
+    }
+
+    /// `fn NAME(in: NAMEInputs) -> NAMEOutputs`
+    fn library(&mut self, name: &str, globals: &Globals) {
+        let entry = self.graph.function(self.graph.entry());
+        let mut scope = Scope::inside(&self.prefix);
+        let inputs = entry.inputs.iter().map(|slot| {
+            let ty = self.types.get(&mut self.module.types, slot.ty);
+            Member { name: slot.name.clone(), ty, binding: None }
+        });
+        let inputs: Vec<Member> = inputs.collect();
+        let outputs = entry.outputs.iter().map(|(slot, _)| {
+            let ty = self.types.get(&mut self.module.types, slot.ty);
+            Member { name: slot.name.clone(), ty, binding: None }
+        });
+        let outputs: Vec<Member> = outputs.collect();
+        let mut function = naga::Function { name: Some(self.names.placeholder(name.to_owned())), ..Default::default() };
+        let takes_inputs = !inputs.is_empty();
+        if takes_inputs {
+            let ty = self.structure(&camel_case(&format!("{}_inputs", self.prefix)), inputs);
+            let placeholder = self.names.placeholder(scope.name("in"));
+            function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding: None });
+        }
+        let ty = self.structure(&camel_case(&format!("{}_outputs", self.prefix)), outputs);
+        function.result = Some(naga::FunctionResult { ty, binding: None });
+        let mut body = Body::new(&mut function);
+        let base = takes_inputs.then(|| body.add(Expression::FunctionArgument(0)));
+        let members: Vec<Handle<Expression>> = base
+            .iter()
+            .flat_map(|base| (0..entry.inputs.len() as u32).map(|index| (*base, index)))
+            .collect::<Vec<_>>()
+            .into_iter()
+            .map(|(base, index)| body.add(Expression::AccessIndex { base, index }))
+            .collect();
+        let (value, results) = self.call_plain(&mut body, globals, &mut scope, members);
+        let components = if entry.outputs.len() > 1 {
+            (0..entry.outputs.len() as u32).map(|index| body.add(Expression::AccessIndex { base: value, index })).collect()
+        } else {
+            vec![value]
+        };
+        let value = body.add(Expression::Compose { ty, components });
+        body.finish(Statement::Return { value: Some(value) });
+        self.results.push(results);
+        self.module.functions.append(function, Span::UNDEFINED);
+    }
+}
+
+fn scalar_of(ty: Type) -> naga::Scalar {
+    scalar(ty.scalar().unwrap_or(Scalar::Float))
+}
+
+fn at_location(location: u32, float: bool) -> Binding {
+    Binding::Location {
+        location,
+        interpolation: Some(if float { naga::Interpolation::Perspective } else { naga::Interpolation::Flat }),
+        sampling: float.then_some(naga::Sampling::Center),
+        blend_src: None,
+        per_primitive: false,
+    }
+}

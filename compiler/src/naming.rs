@@ -1,0 +1,147 @@
+//! Names in the emitted text.
+//!
+//! The text writer renames whatever is used twice in a module, reserved, or ends in a digit. So it
+//! is only ever given placeholders (`z17z`), which it leaves alone, and the names of our choice
+//! replace them in the text it writes (see [`Names::apply`]).
+
+use rustc_hash::FxHashSet;
+
+/// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
+/// `_` (tools that import WGSL refuse it otherwise), no leading `_`.
+pub fn identifier(name: &str) -> String {
+    let mut out: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    while out.contains("__") {
+        out = out.replace("__", "_");
+    }
+    let mut out = out.trim_start_matches('_').to_owned();
+    if out.is_empty() || out.starts_with(|c: char| c.is_ascii_digit()) {
+        out.insert(0, 'n');
+    }
+    if out.ends_with(|c: char| c.is_ascii_digit()) {
+        out.push('_');
+    }
+    out
+}
+
+/// `tile_map` as `TileMap`.
+pub fn camel_case(name: &str) -> String {
+    let words = name.split('_').filter(|word| !word.is_empty());
+    let camel: String = words
+        .map(|word| {
+            let (first, rest) = word.split_at(1);
+            format!("{}{rest}", first.to_ascii_uppercase())
+        })
+        .collect();
+    if camel.ends_with(|c: char| c.is_ascii_digit()) { format!("{camel}_") } else { camel }
+}
+
+/// `_b`, `_c`, … `_z`, `_ba`, …: suffixes without digits.
+fn suffix(mut n: usize) -> String {
+    let mut letters = Vec::new();
+    while n > 0 {
+        letters.push(b'a' + (n % 26) as u8);
+        n /= 26;
+    }
+    letters.iter().rev().map(|c| char::from(*c)).collect()
+}
+
+/// The names of one scope: a module, a function, a struct.
+#[derive(Default, Clone)]
+pub struct Scope {
+    taken: FxHashSet<String>,
+    /// Names beginning with this belong to the module.
+    module: String,
+}
+
+impl Scope {
+    /// A scope inside a module all of whose names begin with `module`.
+    pub fn inside(module: &str) -> Scope {
+        Scope { taken: FxHashSet::default(), module: module.to_owned() }
+    }
+
+    /// The wished name, or one like it that is free here.
+    pub fn name(&mut self, wish: &str) -> String {
+        let mut base = identifier(wish);
+        let module = !self.module.is_empty()
+            && base.strip_prefix(&self.module).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
+        if module || is_reserved(&base) {
+            base = format!("{base}_value");
+        }
+        let free = (0..).map(|n| if n == 0 { base.clone() } else { format!("{base}_{}", suffix(n)) });
+        let name = { free }.find(|name| !self.taken.contains(name)).unwrap_or(base);
+        self.taken.insert(name.clone());
+        name
+    }
+}
+
+/// Keywords, reserved words and predeclared names of WGSL, and those Tint refuses beyond them.
+fn is_reserved(name: &str) -> bool {
+    crate::lower::is_keyword(name) || matches!(name, "active" | "self" | "main")
+}
+
+/// Final names by placeholder.
+#[derive(Default)]
+pub struct Names(Vec<String>);
+
+impl Names {
+    /// A placeholder for a final name.
+    pub fn placeholder(&mut self, name: String) -> String {
+        self.0.push(name);
+        format!("z{}z", self.0.len() - 1)
+    }
+
+    fn get(&self, token: &str) -> Option<&str> {
+        let number = token.strip_prefix('z')?.strip_suffix('z')?;
+        self.0.get(number.parse::<usize>().ok()?).map(String::as_str)
+    }
+
+    /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
+    /// nth function, which the writer names itself.
+    pub fn apply(&self, text: &str, results: &[rustc_hash::FxHashMap<u32, String>]) -> String {
+        let mut out = String::with_capacity(text.len());
+        let mut rest = text;
+        let mut function = 0;
+        while let Some(start) = rest.find(|c: char| c.is_ascii_alphabetic() || c == '_') {
+            let (before, from) = rest.split_at(start);
+            out.push_str(before);
+            let end = from.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(from.len());
+            let (token, after) = from.split_at(end);
+            function += usize::from(token == "fn");
+            let result = token.strip_prefix("_e").and_then(|n| n.parse::<u32>().ok());
+            let result = result.and_then(|n| results.get(function.wrapping_sub(1))?.get(&n)).map(String::as_str);
+            out.push_str(self.get(token).or(result).unwrap_or(token));
+            // A number's suffix or exponent is no name: skip what directly follows a digit.
+            rest = after;
+        }
+        out.push_str(rest);
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_legal_and_distinct() {
+        let mut scope = Scope::inside("meadow");
+        assert_eq!(scope.name("cell"), "cell");
+        assert_eq!(scope.name("cell"), "cell_b");
+        assert_eq!(scope.name("uv2"), "uv2_");
+        assert_eq!(scope.name("meadow"), "meadow_value");
+        assert_eq!(scope.name("meadow_grass"), "meadow_grass_value");
+        assert_eq!(scope.name("loop"), "loop_value");
+        assert_eq!(scope.name("s.scale"), "s_scale");
+        assert_eq!(scope.name("_x"), "x");
+        assert_eq!(camel_case("tile_map"), "TileMap");
+    }
+
+    #[test]
+    fn placeholders_become_names_and_numbers_stay() {
+        let mut names = Names::default();
+        let cell = names.placeholder("cell".to_owned());
+        let at = names.placeholder("at".to_owned());
+        let text = format!("let {cell} = 1e-3f + {at}.x * 0x1fu;");
+        assert_eq!(names.apply(&text, &[]), "let cell = 1e-3f + at.x * 0x1fu;");
+    }
+}

@@ -1,0 +1,113 @@
+//! Constant folding and the few identities that always pay, applied as values are made.
+//!
+//! What has known operands becomes a number, by the row that defines it. Multiplication by 0 may
+//! fold because no NaN and no infinity leaves an expression.
+
+use crate::graph::{Constant, Function, Operation, Scalar, Value};
+use crate::intrinsic::{
+    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, MULTIPLY, MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE, SUBTRACT,
+    SUBTRACT_INT,
+};
+
+/// What an operation folds to.
+pub enum Folded {
+    /// A value that is there already.
+    Value(Value),
+    /// A simpler operation of the same type.
+    Operation(Operation),
+}
+
+/// What an operation over values of `function` folds to, if it does.
+pub fn fold(function: &Function, operation: &Operation) -> Option<Folded> {
+    match operation {
+        Operation::Builtin(intrinsic, arguments) => {
+            let known: Option<Vec<Constant>> = arguments.iter().map(|v| known(function, *v)).collect();
+            match known {
+                Some(known) => Some(Folded::Operation(Operation::Constant(intrinsic.evaluate(&known)))),
+                None => identity(function, *intrinsic, arguments),
+            }
+        }
+        Operation::Compose(parts) => compose(function, parts),
+        Operation::Extract(vector, i) => extract(function, *vector, *i),
+        Operation::Select(condition, yes, no) if yes == no || known(function, *condition).is_some() => {
+            let holds = known(function, *condition).is_none_or(|c| c.bool(0));
+            Some(Folded::Value(if holds { *yes } else { *no }))
+        }
+        _ => None,
+    }
+}
+
+fn known(function: &Function, value: Value) -> Option<Constant> {
+    match function.operation(value) {
+        Operation::Constant(c) => Some(*c),
+        _ => None,
+    }
+}
+
+/// Whether a value is this number in every component.
+fn is(function: &Function, value: Value, number: i32) -> bool {
+    known(function, value).is_some_and(|c| {
+        (0..usize::from(c.width())).all(|i| match c.scalar() {
+            Scalar::Float => c.float(i) == number as f32,
+            Scalar::Int | Scalar::Bool => c.int(i) == number,
+        })
+    })
+}
+
+fn identity(function: &Function, intrinsic: crate::intrinsic::Intrinsic, arguments: &[Value]) -> Option<Folded> {
+    let is = |i: usize, number: i32| arguments.get(i).is_some_and(|v| is(function, *v, number));
+    let keep = |i: usize| Some(Folded::Value(arguments[i]));
+    match intrinsic {
+        ADD | ADD_INT if is(0, 0) => keep(1),
+        ADD | ADD_INT | SUBTRACT | SUBTRACT_INT if is(1, 0) => keep(0),
+        SUBTRACT if is(0, 0) => Some(Folded::Operation(Operation::Builtin(NEGATE, vec![arguments[1]]))),
+        MULTIPLY | MULTIPLY_INT if is(0, 0) || is(1, 1) => keep(0),
+        MULTIPLY | MULTIPLY_INT if is(1, 0) || is(0, 1) => keep(1),
+        DIVIDE | RAW_DIVIDE if is(0, 0) || is(1, 1) => keep(0),
+        NEGATE => match function.operation(arguments[0]) {
+            Operation::Builtin(NEGATE, inner) => Some(Folded::Value(inner[0])),
+            _ => None,
+        },
+        FLOOR => match function.operation(arguments[0]) {
+            Operation::Builtin(FLOOR, _) => keep(0),
+            _ => None,
+        },
+        AND if is(0, 1) || is(1, 0) => keep(1),
+        AND if is(1, 1) || is(0, 0) => keep(0),
+        OR if is(0, 0) || is(1, 1) => keep(1),
+        OR if is(1, 0) || is(0, 1) => keep(0),
+        CHOOSE | CHOOSE_INT => choose(function, arguments),
+        _ => None,
+    }
+}
+
+/// A choice that is the same in every component, or has no choice.
+fn choose(function: &Function, arguments: &[Value]) -> Option<Folded> {
+    let &[condition, yes, no] = arguments else { return None };
+    if yes == no || is(function, condition, 1) {
+        return Some(Folded::Value(yes));
+    }
+    is(function, condition, 0).then_some(Folded::Value(no))
+}
+
+fn compose(function: &Function, parts: &[Value]) -> Option<Folded> {
+    let numbers: Option<Vec<Constant>> = parts.iter().map(|v| known(function, *v)).collect();
+    if let Some(numbers) = numbers {
+        let scalar = numbers.first()?.scalar();
+        let whole = Constant::new(scalar, numbers.iter().map(|c| c.bits()[0]));
+        return Some(Folded::Operation(Operation::Constant(whole)));
+    }
+    // All components of one vector in order: the vector itself.
+    let Operation::Extract(vector, 0) = function.operation(*parts.first()?) else { return None };
+    let whole = usize::from(function.ty(*vector).width()) == parts.len()
+        && parts.iter().enumerate().all(|(i, v)| *function.operation(*v) == Operation::Extract(*vector, i as u8));
+    whole.then_some(Folded::Value(*vector))
+}
+
+fn extract(function: &Function, vector: Value, i: u8) -> Option<Folded> {
+    match function.operation(vector) {
+        Operation::Constant(c) => Some(Folded::Operation(Operation::Constant(c.component(usize::from(i))))),
+        Operation::Compose(parts) => parts.get(usize::from(i)).map(|v| Folded::Value(*v)),
+        _ => None,
+    }
+}

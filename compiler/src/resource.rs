@@ -1,0 +1,295 @@
+//! Resources as the graph knows them, and the table of resource kinds.
+//!
+//! A kind is one row here (its constructor, in the language's own notation, the fields that shaders
+//! read, and how the arguments become a [`Recipe`]) and one file in the runtime, which makes the
+//! bytes.
+
+use crate::diagnostic::{Diagnostic, Place, constructors};
+use crate::graph::{Constant, Texel, View, ViewDimension};
+use crate::manifest::{Encoding, Filter, IndicesSource, Recipe, Wrap};
+
+/// A resource of a program: one constructor call.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resource {
+    /// The name of its `let`.
+    pub name: String,
+    /// Its documentation.
+    pub label: String,
+    /// The constructor call, for errors that only loading finds.
+    pub place: Place,
+    /// What its bytes are made of.
+    pub recipe: Recipe,
+    /// The sampler of its views, if they are sampled.
+    pub sampler: Option<SamplerState>,
+}
+
+/// How a view is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SamplerState {
+    /// What lies outside 0..1.
+    pub wrap: Wrap,
+    /// Within and between levels.
+    pub filter: Filter,
+}
+
+/// A row of the table.
+pub struct Kind {
+    /// The constructor's and the type's name.
+    pub name: &'static str,
+    /// What the constructor takes. Besides the language's types: `text`, `texts` (one string or a
+    /// list of them) and `cells` (a string or rows of ints).
+    pub constructor: &'static str,
+    /// One line for the reference.
+    pub doc: &'static str,
+    /// What shaders read.
+    pub fields: &'static [Field],
+    /// The view that `sample`, `texel` and `.size` of the resource itself mean.
+    pub view: Option<&'static str>,
+    /// Arguments to a recipe. `Err` for a kind that is not built yet.
+    pub make: fn(&Arguments) -> Result<Made, Diagnostic>,
+}
+
+/// A field of a kind.
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: FieldKind,
+}
+
+/// What a field is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum FieldKind {
+    /// A texture.
+    View(View),
+    /// A number known from the arguments.
+    Constant,
+}
+
+/// What a constructor call makes.
+pub struct Made {
+    /// What the bytes are made of.
+    pub recipe: Recipe,
+    /// The values of the constant fields, by name.
+    pub constants: Vec<(&'static str, Constant)>,
+    /// How the views are sampled.
+    pub sampler: Option<SamplerState>,
+}
+
+/// The arguments of a constructor call, defaults filled in.
+pub struct Arguments {
+    /// The call.
+    pub place: Place,
+    /// The file that holds the call, to resolve paths against.
+    pub file: String,
+    /// Each with its input's name and its place.
+    pub values: Vec<(String, Place, Argument)>,
+}
+
+/// One argument of a constructor.
+pub enum Argument {
+    /// A string.
+    Text(String),
+    /// A list of strings.
+    Texts(Vec<String>),
+    /// Rows of ints.
+    Rows(Vec<Vec<i32>>),
+    /// A number.
+    Number(Constant),
+    /// A bare word.
+    Word(String),
+}
+
+impl Arguments {
+    fn get(&self, name: &str) -> Option<(&Argument, Place)> {
+        self.values.iter().find(|(n, ..)| n == name).map(|(_, place, argument)| (argument, *place))
+    }
+
+    fn place(&self, name: &str) -> Place {
+        self.get(name).map_or(self.place, |(_, place)| place)
+    }
+
+    fn word(&self, name: &str) -> &str {
+        match self.get(name) {
+            Some((Argument::Word(word), _)) => word,
+            _ => "",
+        }
+    }
+
+    fn int(&self, name: &str) -> i32 {
+        match self.get(name) {
+            Some((Argument::Number(c), _)) => c.int(0),
+            _ => 0,
+        }
+    }
+
+    /// A count that must lie within bounds.
+    fn count(&self, name: &str, low: i32, high: i32) -> Result<u32, Diagnostic> {
+        let count = self.int(name);
+        if (low..=high).contains(&count) {
+            Ok(count as u32)
+        } else {
+            Err(constructors::out_of_bounds(self.place(name), name, count, low, high))
+        }
+    }
+
+    fn paths(&self, name: &str) -> Vec<String> {
+        let written = match self.get(name) {
+            Some((Argument::Text(path), _)) => std::slice::from_ref(path),
+            Some((Argument::Texts(paths), _)) => paths,
+            _ => &[],
+        };
+        written.iter().map(|path| crate::module::resolve(&self.file, path)).collect()
+    }
+
+    fn encoding(&self) -> Encoding {
+        match self.word("encoding") {
+            "linear" => Encoding::Linear,
+            "normal" => Encoding::Normal,
+            _ => Encoding::Srgb,
+        }
+    }
+
+    fn filter(&self) -> Filter {
+        if self.word("filter") == "nearest" { Filter::Nearest } else { Filter::Linear }
+    }
+
+    fn wrap(&self) -> Wrap {
+        match self.word("wrap") {
+            "clamp" => Wrap::Clamp,
+            "mirror" => Wrap::Mirror,
+            _ => Wrap::Repeat,
+        }
+    }
+
+    fn isotropic(&self) -> Result<(), Diagnostic> {
+        match self.int("anisotropy") {
+            1 => Ok(()),
+            _ => Err(constructors::not_yet(self.place("anisotropy"), "anisotropic filtering")),
+        }
+    }
+}
+
+const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled };
+const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer };
+
+/// Every kind.
+pub static KINDS: &[Kind] = &[
+    Kind {
+        name: "image",
+        constructor: "(path: text, wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
+                      encoding: srgb | linear | normal = srgb, anisotropy: int = 1) -> image",
+        doc: "A picture with its mip levels.",
+        fields: &[Field { name: "pixels", kind: FieldKind::View(PIXELS) }],
+        view: Some("pixels"),
+        make: make_image,
+    },
+    Kind {
+        name: "patterns",
+        constructor: "(paths: texts, grid: ivec2 = 1, encoding: srgb | linear | normal = srgb, \
+                      filter: linear | nearest = linear, anisotropy: int = 1) -> patterns",
+        doc: "Interchangeable tiles, one layer each with its own mip levels.",
+        fields: &[
+            Field { name: "layers", kind: FieldKind::View(LAYERS) },
+            Field { name: "count", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: make_patterns,
+    },
+    Kind {
+        name: "permutation",
+        constructor: "(size: int, seed: int = 0) -> permutation",
+        doc: "A table of four independent permutations of 0..size.",
+        fields: &[
+            Field { name: "table", kind: FieldKind::View(INTEGERS) },
+            Field { name: "size", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: make_permutation,
+    },
+    Kind {
+        name: "indices",
+        constructor: "(cells: cells, levels: int = 256) -> indices",
+        doc: "An integer map, which wraps.",
+        fields: &[
+            Field { name: "map", kind: FieldKind::View(INTEGERS) },
+            Field { name: "levels", kind: FieldKind::Constant },
+        ],
+        view: Some("map"),
+        make: make_indices,
+    },
+];
+
+/// Kinds of the language that are not built yet.
+pub const LATER: &[&str] =
+    &["images", "volume", "probability", "materials", "exemplar", "sprites", "positions", "pixel_map", "ramp", "bake"];
+
+fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
+    a.isotropic()?;
+    let path = a.paths("path").into_iter().next().unwrap_or_default();
+    Ok(Made {
+        recipe: Recipe::Image { path, encoding: a.encoding() },
+        constants: Vec::new(),
+        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
+    })
+}
+
+fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
+    a.isotropic()?;
+    let paths = a.paths("paths");
+    let place = a.place("grid");
+    let (columns, rows) = match a.get("grid") {
+        Some((Argument::Number(c), _)) => (c.int(0), c.int(1)),
+        _ => (1, 1),
+    };
+    if columns < 1 || rows < 1 {
+        return Err(constructors::empty_grid(place, columns, rows));
+    }
+    if paths.len() != 1 && (columns, rows) != (1, 1) {
+        return Err(constructors::grid_of_a_list(place));
+    }
+    let cells = i64::from(columns) * i64::from(rows);
+    let count = cells.saturating_mul(paths.len() as i64);
+    if !(1..=256).contains(&count) {
+        return Err(constructors::too_many_patterns(if cells > 1 { place } else { a.place("paths") }, count));
+    }
+    Ok(Made {
+        recipe: Recipe::Patterns { paths, grid: [columns as u32, rows as u32], encoding: a.encoding() },
+        constants: vec![("count", Constant::ints(&[count as i32]))],
+        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: a.filter() }),
+    })
+}
+
+fn make_permutation(a: &Arguments) -> Result<Made, Diagnostic> {
+    let size = a.count("size", 2, 4096)?;
+    Ok(Made {
+        recipe: Recipe::Permutation { size, seed: a.int("seed") },
+        constants: vec![("size", Constant::ints(&[size as i32]))],
+        sampler: None,
+    })
+}
+
+fn make_indices(a: &Arguments) -> Result<Made, Diagnostic> {
+    let levels = a.count("levels", 1, 65536)?;
+    let source = match a.get("cells") {
+        Some((Argument::Rows(rows), place)) => IndicesSource::Rows(checked_rows(rows, levels, place)?),
+        _ => IndicesSource::Path(a.paths("cells").into_iter().next().unwrap_or_default()),
+    };
+    Ok(Made {
+        recipe: Recipe::Indices { source, levels },
+        constants: vec![("levels", Constant::ints(&[levels as i32]))],
+        sampler: None,
+    })
+}
+
+fn checked_rows(rows: &[Vec<i32>], levels: u32, place: Place) -> Result<Vec<Vec<i32>>, Diagnostic> {
+    let width = rows.first().map_or(0, Vec::len);
+    if width == 0 || rows.iter().any(|row| row.len() != width) {
+        return Err(constructors::ragged_rows(place));
+    }
+    match rows.iter().flatten().find(|i| !(0..levels as i32).contains(*i)) {
+        Some(i) => Err(constructors::out_of_bounds(place, "cell", *i, 0, levels as i32 - 1)),
+        None => Ok(rows.to_vec()),
+    }
+}

@@ -1,0 +1,86 @@
+//! Literals that are none: `3y`, `1.`, `.5`, `#12345`, `"\q"`.
+
+use super::{Guess, Place};
+use crate::error::{SyntaxError, SyntaxErrorKind as Kind};
+use crate::parse::is_literal;
+use crate::scan::TokenKind;
+use crate::syntax::Span;
+
+impl Place<'_, '_> {
+    /// Literals that are none, wherever they stand.
+    pub(super) fn literal(&self) -> Guess {
+        let text = self.text.to_string();
+        match self.token.kind {
+            TokenKind::Number if !is_literal(self.text) => {
+                self.here(Kind::BadNumber { text, mend: None })
+            }
+            TokenKind::Color if !is_literal(self.text) => self.here(Kind::BadColor { text }),
+            TokenKind::Text => self.bad_escape(),
+            _ => self.leading_dot().or_else(|| self.trailing_dot()),
+        }
+    }
+
+    fn bad_escape(&self) -> Guess {
+        let mut at = 0;
+        while let Some(next) = self.text.get(at..)?.find('\\') {
+            at += next;
+            let rest = &self.text[at..];
+            let braced = rest.starts_with("\\u{").then(|| rest.find('}')).flatten();
+            let length = match (braced, rest.chars().nth(1)) {
+                (Some(end), _) => end + 1,
+                (None, Some(character)) => 1 + character.len_utf8(),
+                (None, None) => 1,
+            };
+            let escape = &rest[..length];
+            if !is_literal(&format!("\"{escape}\"")) {
+                let start = self.token.span.start as usize + at;
+                let kind = Kind::BadEscape {
+                    escape: escape.to_string(),
+                };
+                return Some(SyntaxError {
+                    kind,
+                    span: Span::new(start, start + length),
+                });
+            }
+            at += length;
+        }
+        None
+    }
+
+    /// `.5`
+    fn leading_dot(&self) -> Guess {
+        let next = self.at(1)?;
+        if self.text != "."
+            || next.kind != TokenKind::Number
+            || next.span.start != self.token.span.end
+        {
+            return None;
+        }
+        let text = format!(".{}", self.scan.text(next));
+        let mend = Some(format!("0{text}"));
+        let span = self.token.span.to(next.span);
+        Some(SyntaxError {
+            kind: Kind::BadNumber { text, mend },
+            span,
+        })
+    }
+
+    /// `1.`
+    fn trailing_dot(&self) -> Guess {
+        let number = self
+            .at(-2)
+            .filter(|token| token.kind == TokenKind::Number)?;
+        let dot = self
+            .at(-1)
+            .filter(|dot| dot.span.start == number.span.end)?;
+        if self.scan.text(dot) != "." || !self.expects("a name") {
+            return None;
+        }
+        let text = format!("{}.", self.scan.text(number));
+        let mend = Some(format!("{text}0"));
+        Some(SyntaxError {
+            kind: Kind::BadNumber { text, mend },
+            span: number.span.to(dot.span),
+        })
+    }
+}

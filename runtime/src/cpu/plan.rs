@@ -1,0 +1,343 @@
+//! What to compute for a picture: the operations that the wanted output needs, function by
+//! function, and the values that no pixel changes.
+//!
+//! Demand runs from the entry down: a function's outputs are wanted where a live call of it has
+//! a live `Output`. A value is *known* when it depends on no input of its function (in the entry:
+//! on none that changes per pixel); it is computed here, once, calls included. All others become
+//! [`Step`]s.
+//!
+//! A planned function keeps the graph's own [`Operation`]s, over *registers* instead of values:
+//! those below the number of known values are the function's constants, the others its frame, which
+//! begins with its inputs.
+
+use super::machine::{Machine, evaluate};
+use super::texture::Texture;
+use crate::flat::Slope;
+use crate::render::{RenderError, Request};
+use texgraph_compiler::Program;
+use texgraph_compiler::graph::{Axis, Constant, Function, Graph, Operation, Value};
+use texgraph_compiler::manifest;
+
+/// The most operations a pixel.
+const MAX_OPERATIONS: u64 = 1_000_000_000;
+
+/// What to compute for every pixel.
+pub struct Plan {
+    /// The graph's functions, those that are not needed empty.
+    pub functions: Vec<Planned>,
+    /// The function to run.
+    pub entry: usize,
+    /// Which of its outputs is wanted.
+    pub output: usize,
+    /// What its frame begins with, and how many components of it.
+    pub inputs: Vec<(Source, u8)>,
+}
+
+/// What an input of the entry is at a pixel.
+#[derive(Clone, Copy)]
+pub enum Source {
+    /// Its value.
+    Value(Slope),
+    /// Its derivative to the right.
+    Right(Slope),
+    /// Its derivative down.
+    Down(Slope),
+}
+
+/// A function, planned.
+#[derive(Default)]
+pub struct Planned {
+    /// The first registers: what no pixel changes.
+    pub known: Vec<Constant>,
+    /// What to do, in order.
+    pub steps: Vec<Step>,
+    /// The size of the frame, inputs included.
+    pub slots: usize,
+    /// The register of each output; none for those that nobody wants.
+    pub outputs: Vec<Option<Value>>,
+    /// Operations of a run, calls included.
+    cost: u64,
+}
+
+/// One operation of a run.
+pub struct Step {
+    /// Its operands are registers.
+    pub operation: Operation,
+    /// Where its result goes; not used by calls.
+    pub target: Value,
+    /// Of a call: which output goes to which register.
+    pub results: Vec<(u32, Value)>,
+}
+
+impl Plan {
+    /// Plans a request.
+    ///
+    /// # Errors
+    /// A pixel takes more than [`MAX_OPERATIONS`].
+    pub fn new(program: &Program, request: &Request, textures: &[Texture]) -> Result<Plan, RenderError> {
+        let graph = &program.graph;
+        let live = demand(graph, request.output);
+        let entry = graph.functions.len().saturating_sub(1);
+        let mut plan = Plan { functions: Vec::new(), entry, output: request.output, inputs: Vec::new() };
+        for (id, function) in graph.functions.iter().enumerate() {
+            let mut planner = Planner::new(program, request, function, &live[id]);
+            if id == entry {
+                planner.take_entry_inputs();
+            } else {
+                planner.take_inputs();
+            }
+            planner.compute_known(&plan.functions, textures)?;
+            planner.schedule(&plan.functions);
+            bound(planner.planned.cost)?;
+            plan.inputs = planner.inputs;
+            plan.functions.push(planner.planned);
+        }
+        Ok(plan)
+    }
+}
+
+/// Refuses what would take for ever.
+fn bound(operations: u64) -> Result<(), RenderError> {
+    if operations > MAX_OPERATIONS {
+        return Err(RenderError::TooMuchWork { operations, limit: MAX_OPERATIONS });
+    }
+    Ok(())
+}
+
+/// Which values of each function the output needs.
+fn demand(graph: &Graph, output: usize) -> Vec<Vec<bool>> {
+    let functions = &graph.functions;
+    let mut live: Vec<Vec<bool>> = functions.iter().map(|function| vec![false; function.values.len()]).collect();
+    if let Some((_, value)) = functions.last().and_then(|entry| entry.outputs.get(output)) {
+        live[functions.len() - 1][value.0 as usize] = true;
+    }
+    for id in (0..functions.len()).rev() {
+        let (callees, rest) = live.split_at_mut(id);
+        let own = &mut rest[0];
+        for (value, operation) in functions[id].iter().rev() {
+            if !own[value.0 as usize] {
+                continue;
+            }
+            operation.for_operands(|operand| own[operand.0 as usize] = true);
+            if let Operation::Output(call, n) = operation
+                && let Operation::Call(callee, _) = functions[id].operation(*call)
+                && let Some((_, wanted)) = functions[callee.0 as usize].outputs.get(*n as usize)
+            {
+                callees[callee.0 as usize][wanted.0 as usize] = true;
+            }
+        }
+    }
+    live
+}
+
+/// What is known of a value while its function is planned.
+#[derive(Clone, PartialEq)]
+enum State {
+    /// Nothing: it is dead, or not yet looked at.
+    Unknown,
+    /// What it is worth.
+    Known(Constant),
+    /// All outputs of a call that no pixel changes.
+    KnownCall(Vec<Constant>),
+    /// A place in the frame.
+    Slot(usize),
+    /// The call that this step makes.
+    Call(usize),
+}
+
+struct Planner<'a> {
+    program: &'a Program,
+    request: &'a Request,
+    function: &'a Function,
+    live: &'a [bool],
+    states: Vec<State>,
+    inputs: Vec<(Source, u8)>,
+    planned: Planned,
+}
+
+impl<'a> Planner<'a> {
+    fn new(program: &'a Program, request: &'a Request, function: &'a Function, live: &'a [bool]) -> Planner<'a> {
+        let states = vec![State::Unknown; function.values.len()];
+        Planner { program, request, function, live, states, inputs: Vec::new(), planned: Planned::default() }
+    }
+
+    /// Live values with their operations, operands first.
+    fn live(&self) -> impl Iterator<Item = (Value, &'a Operation)> + use<'a> {
+        let live = self.live;
+        self.function.iter().filter(move |(value, _)| live[value.0 as usize])
+    }
+
+    fn state(&self, value: Value) -> &State {
+        &self.states[value.0 as usize]
+    }
+
+    fn set(&mut self, value: Value, state: State) {
+        self.states[value.0 as usize] = state;
+    }
+
+    /// The frame begins with the inputs, in order.
+    fn take_inputs(&mut self) {
+        self.planned.slots = self.function.inputs.len();
+        for (value, operation) in self.live() {
+            if let Operation::Input(n) = operation {
+                self.set(value, State::Slot(*n as usize));
+            }
+        }
+    }
+
+    /// The frame begins with what the entry reads of its inputs: values and derivatives.
+    fn take_entry_inputs(&mut self) {
+        for (value, operation) in self.live() {
+            let state = match operation {
+                Operation::Input(n) => self.entry_input(*n, Source::Value),
+                Operation::Derivative(of, axis) => match self.function.operation(*of) {
+                    Operation::Input(n) if *axis == Axis::X => self.entry_input(*n, Source::Right),
+                    Operation::Input(n) => self.entry_input(*n, Source::Down),
+                    _ => State::Unknown,
+                },
+                _ => continue,
+            };
+            self.set(value, state);
+        }
+        self.planned.slots = self.inputs.len();
+    }
+
+    fn entry_input(&mut self, n: u32, source: fn(Slope) -> Source) -> State {
+        let Some(slot) = self.function.inputs.get(n as usize) else { return State::Unknown };
+        let input = self.program.manifest.inputs.iter().find(|input| input.name == slot.name);
+        let draw = input.and_then(|input| self.request.draw().value(&input.name, input.ty));
+        let slope = Slope::of(&slot.name, self.request);
+        match (draw, source(slope)) {
+            (Some(value), Source::Value(_)) => State::Known(constant(&value)),
+            (_, source) => {
+                self.inputs.push((source, slot.ty.width()));
+                State::Slot(self.inputs.len() - 1)
+            }
+        }
+    }
+
+    /// Computes every live value whose operands are known.
+    fn compute_known(&mut self, callees: &[Planned], textures: &[Texture]) -> Result<(), RenderError> {
+        let mut machine = Machine::new(callees, textures);
+        let mut work = 0u64;
+        for (value, operation) in self.live() {
+            if *self.state(value) != State::Unknown || !self.can_be_known(operation) {
+                continue;
+            }
+            work = work.saturating_add(cost(operation, callees));
+            bound(work)?;
+            if let Some(state) = self.known(operation, &mut machine, textures) {
+                self.set(value, state);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all operands are known.
+    fn can_be_known(&self, operation: &Operation) -> bool {
+        let mut known = !matches!(operation, Operation::Input(_) | Operation::Derivative(..));
+        operation.for_operands(|operand| known &= matches!(self.state(operand), State::Known(_) | State::KnownCall(_)));
+        known
+    }
+
+    /// The worth of an operation over known operands; none where the program is not whole.
+    fn known(&self, operation: &Operation, machine: &mut Machine<'_>, textures: &[Texture]) -> Option<State> {
+        let read = |value: Value| match self.state(value) {
+            State::Known(constant) => *constant,
+            _ => Constant::floats(&[0.0]),
+        };
+        match operation {
+            Operation::Param(id) => {
+                let name = &self.program.graph.params.get(id.0 as usize)?.name;
+                let param = self.program.manifest.params.iter().find(|param| param.name == *name)?;
+                Some(State::Known(constant(&self.request.settings.value(param))))
+            }
+            Operation::Output(call, n) => {
+                let State::KnownCall(outputs) = self.state(*call) else { return None };
+                outputs.get(*n as usize).map(|output| State::Known(*output))
+            }
+            Operation::Call(id, arguments) => {
+                let outputs = machine.run(id.0 as usize, arguments.iter().map(|value| read(*value)));
+                Some(State::KnownCall(outputs.to_vec()))
+            }
+            _ => Some(State::Known(evaluate(operation, read, textures, &mut Vec::new()))),
+        }
+    }
+
+    /// Makes steps of all that is left.
+    fn schedule(&mut self, callees: &[Planned]) {
+        let known = self.number_known();
+        for (value, operation) in self.live() {
+            if *self.state(value) != State::Unknown {
+                continue;
+            }
+            if let Operation::Output(call, n) = operation {
+                let target = self.new_slot(value);
+                if let State::Call(step) = self.state(*call) {
+                    let step = *step;
+                    self.planned.steps[step].results.push((*n, target));
+                }
+                continue;
+            }
+            self.planned.cost = self.planned.cost.saturating_add(cost(operation, callees));
+            let moved = operation.map_operands(|operand| self.register(&known, operand));
+            let target = if matches!(operation, Operation::Call(..)) {
+                self.set(value, State::Call(self.planned.steps.len()));
+                Value(0)
+            } else {
+                self.new_slot(value)
+            };
+            self.planned.steps.push(Step { operation: moved, target, results: Vec::new() });
+        }
+        let outputs = self.function.outputs.iter();
+        let wanted = outputs.map(|(_, value)| self.live[value.0 as usize].then(|| self.register(&known, *value)));
+        self.planned.outputs = wanted.collect();
+    }
+
+    /// A new place in the frame for a value; its register.
+    fn new_slot(&mut self, value: Value) -> Value {
+        self.set(value, State::Slot(self.planned.slots));
+        self.planned.slots += 1;
+        Value((self.planned.known.len() + self.planned.slots - 1) as u32)
+    }
+
+    /// The register of a value that is known or has been scheduled. A call has none: only its
+    /// outputs are read.
+    fn register(&self, known: &[Option<u32>], value: Value) -> Value {
+        match (known[value.0 as usize], self.state(value)) {
+            (Some(register), _) => Value(register),
+            (None, State::Slot(slot)) => Value((self.planned.known.len() + slot) as u32),
+            _ => Value(0),
+        }
+    }
+
+    /// Gives every known value that may be read the next register.
+    fn number_known(&mut self) -> Vec<Option<u32>> {
+        let known = &mut self.planned.known;
+        let numbered = self.states.iter().map(|state| match state {
+            State::Known(constant) => {
+                known.push(*constant);
+                Some(known.len() as u32 - 1)
+            }
+            _ => None,
+        });
+        numbered.collect()
+    }
+}
+
+/// The work of one operation, that of its callee included.
+fn cost(operation: &Operation, callees: &[Planned]) -> u64 {
+    match operation {
+        Operation::Call(id, _) => callees.get(id.0 as usize).map_or(1, |callee| callee.cost.saturating_add(1)),
+        _ => 1,
+    }
+}
+
+/// A manifest's value as the graph carries it.
+fn constant(value: &manifest::Value) -> Constant {
+    match value {
+        manifest::Value::Float(components) => Constant::floats(components),
+        manifest::Value::Int(components) => Constant::ints(components),
+        manifest::Value::Bool(components) => Constant::bools(components),
+    }
+}

@@ -1,0 +1,148 @@
+//! Textures of the CPU renderer: tables with their texels decoded.
+
+use crate::render::RenderError;
+use crate::resource::{Tables, srgb_to_linear};
+use glam::{IVec2, IVec4, Vec4};
+use half::f16;
+use rayon::iter::ParallelIterator;
+use rayon::slice::ParallelSlice;
+use texgraph_compiler::graph::{Constant, Graph};
+use texgraph_compiler::manifest::{self, Filter, Format, Manifest, Table, Wrap};
+
+/// A texture with its sampler.
+pub struct Texture {
+    /// The levels, the largest first; at least one.
+    pub levels: Vec<Level>,
+    /// What lies outside 0..1.
+    pub wrap: Wrap,
+    /// How texels are weighed.
+    pub filter: Filter,
+    texels: Texels,
+}
+
+/// One level.
+#[derive(Clone, Copy)]
+pub struct Level {
+    /// Texels across and down, at least 1.
+    pub size: IVec2,
+    /// At least 1.
+    pub layers: i32,
+    /// Where its texels begin.
+    start: usize,
+}
+
+enum Texels {
+    Float(Vec<Vec4>),
+    Int(Vec<IVec4>),
+}
+
+impl Texture {
+    /// Texels of level 0, across and down.
+    pub fn size(&self) -> IVec2 {
+        self.levels[0].size
+    }
+
+    /// A texel of a level; place and layer are inside it.
+    pub fn texel(&self, level: &Level, at: IVec2, layer: i32) -> Vec4 {
+        match &self.texels {
+            Texels::Float(texels) => texels.get(level.index(at, layer)).copied().unwrap_or(Vec4::ZERO),
+            Texels::Int(_) => Vec4::ZERO,
+        }
+    }
+
+    /// A texel of level 0, four floats or four ints; a place outside is moved inside.
+    pub fn fetch(&self, at: IVec2, layer: i32) -> Constant {
+        let level = &self.levels[0];
+        let index = level.index(at.clamp(IVec2::ZERO, level.size - 1), layer.clamp(0, level.layers - 1));
+        match &self.texels {
+            Texels::Float(texels) => Constant::floats(&texels.get(index).copied().unwrap_or(Vec4::ZERO).to_array()),
+            Texels::Int(texels) => Constant::ints(&texels.get(index).copied().unwrap_or(IVec4::ZERO).to_array()),
+        }
+    }
+}
+
+impl Level {
+    fn index(&self, at: IVec2, layer: i32) -> usize {
+        let row = layer as usize * self.size.y as usize + at.y as usize;
+        self.start + row * self.size.x as usize + at.x as usize
+    }
+}
+
+/// The textures of all views of a graph, in their order.
+///
+/// # Errors
+/// The bytes of one are missing or too few.
+pub fn decode_all(graph: &Graph, manifest: &Manifest, tables: &Tables) -> Result<Vec<Texture>, RenderError> {
+    let decode = |view: &texgraph_compiler::graph::ResourceView| {
+        let resource = manifest.resources.get(view.resource as usize)?;
+        let texture = resource.textures.iter().find(|texture| texture.field == view.field)?;
+        let bytes = tables.get(view.resource as usize, view.field)?;
+        decode(texture, texture.table.as_ref()?, bytes)
+    };
+    let textures = graph.views.iter().map(|view| {
+        decode(view).ok_or_else(|| RenderError::NoTable {
+            resource: graph.resources.get(view.resource as usize).map_or(String::new(), |r| r.name.clone()),
+            field: view.field.to_string(),
+        })
+    });
+    textures.collect()
+}
+
+/// None where the table and its bytes do not fit.
+fn decode(texture: &manifest::Texture, table: &Table, bytes: &[u8]) -> Option<Texture> {
+    let texel_bytes = table.format.bytes() as usize;
+    let levels = table.levels.iter().map(|level| Level {
+        size: IVec2::new(level.width as i32, level.height as i32),
+        layers: level.layers as i32,
+        start: level.offset as usize / texel_bytes,
+    });
+    let levels: Vec<Level> = levels.collect();
+    let whole = |level: &Level| {
+        let side = 1..=i32::from(i16::MAX);
+        let count = i64::from(level.size.x) * i64::from(level.size.y) * i64::from(level.layers);
+        let fits = level.start as i64 + count <= (bytes.len() / texel_bytes) as i64;
+        side.contains(&level.size.x) && side.contains(&level.size.y) && side.contains(&level.layers) && fits
+    };
+    if levels.is_empty() || !levels.iter().all(whole) {
+        return None;
+    }
+    let (wrap, filter) = match &texture.sampler {
+        Some(sampler) => (sampler.wrap, sampler.filter),
+        None => (Wrap::Clamp, Filter::Nearest),
+    };
+    Some(Texture { levels, wrap, filter, texels: texels(table.format, bytes) })
+}
+
+fn texels(format: Format, bytes: &[u8]) -> Texels {
+    let light: Vec<f32> = (0..=255u8).map(|code| srgb_to_linear(f64::from(code) / 255.0) as f32).collect();
+    let unorm = |byte: u8| f32::from(byte) / 255.0;
+    let srgb = |byte: u8| light[usize::from(byte)];
+    let snorm = |byte: u8| (f32::from(byte as i8) / 127.0).max(-1.0);
+    let half = |pair: &[u8]| f16::from_le_bytes([pair[0], pair[1]]).to_f32();
+    match format {
+        Format::Rgba8UnormSrgb => floats(bytes, 4, |t| Vec4::new(srgb(t[0]), srgb(t[1]), srgb(t[2]), unorm(t[3]))),
+        Format::Rgba8Unorm => floats(bytes, 4, |t| Vec4::new(unorm(t[0]), unorm(t[1]), unorm(t[2]), unorm(t[3]))),
+        Format::Rgba8Snorm => floats(bytes, 4, |t| Vec4::new(snorm(t[0]), snorm(t[1]), snorm(t[2]), snorm(t[3]))),
+        Format::Rgba16Float => {
+            floats(bytes, 8, |t| Vec4::new(half(&t[0..2]), half(&t[2..4]), half(&t[4..6]), half(&t[6..8])))
+        }
+        Format::R32Sint => ints(bytes, 4),
+        Format::Rgba32Sint => ints(bytes, 16),
+    }
+}
+
+fn floats(bytes: &[u8], texel_bytes: usize, texel: impl Fn(&[u8]) -> Vec4 + Sync + Send) -> Texels {
+    Texels::Float(bytes.par_chunks_exact(texel_bytes).map(texel).collect())
+}
+
+/// Channels that a format does not have are 0, alpha 1, as a shader reads them.
+fn ints(bytes: &[u8], texel_bytes: usize) -> Texels {
+    let texel = |bytes: &[u8]| {
+        let mut components = [0, 0, 0, 1];
+        for (component, word) in components.iter_mut().zip(bytes.chunks_exact(4)) {
+            *component = i32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+        }
+        IVec4::from_array(components)
+    };
+    Texels::Int(bytes.par_chunks_exact(texel_bytes).map(texel).collect())
+}

@@ -1,0 +1,52 @@
+//! Finds and opens an adapter.
+
+use super::Preference;
+use crate::render::RenderError;
+use wgpu::{Adapter, AdapterInfo, Backend, Device, DeviceType, Queue};
+
+/// Opens the first adapter, in order of preference, that gives a device.
+pub fn open(preference: Preference) -> Result<(AdapterInfo, Device, Queue), RenderError> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    adapters.retain(|adapter| {
+        preference == Preference::Hardware || adapter.get_info().device_type == DeviceType::Cpu
+    });
+    adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+    let mut refusals = Vec::new();
+    for adapter in adapters {
+        let info = adapter.get_info();
+        match device(&adapter) {
+            Ok((device, queue)) => return Ok((info, device, queue)),
+            Err(reason) => refusals.push(format!("{}: {reason}", describe(&info))),
+        }
+    }
+    let reason = if refusals.is_empty() { "no adapter was found".to_string() } else { refusals.join("; ") };
+    Err(RenderError::NoAdapter { reason })
+}
+
+/// Graphics cards before software, OpenGL last: it is the least like WebGPU.
+fn rank(info: &AdapterInfo) -> (bool, u8) {
+    let kind = match info.device_type {
+        DeviceType::DiscreteGpu => 0,
+        DeviceType::IntegratedGpu => 1,
+        DeviceType::VirtualGpu => 2,
+        DeviceType::Other => 3,
+        DeviceType::Cpu => 4,
+    };
+    (info.backend == Backend::Gl, kind)
+}
+
+/// A device with exactly WebGPU's default limits, so that what runs here runs everywhere.
+fn device(adapter: &Adapter) -> Result<(Device, Queue), String> {
+    let descriptor = wgpu::DeviceDescriptor { label: Some("texgraph"), ..wgpu::DeviceDescriptor::default() };
+    pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())
+}
+
+/// An adapter in words.
+pub fn describe(info: &AdapterInfo) -> String {
+    let driver = [info.driver.as_str(), info.driver_info.as_str()].join(" ");
+    match driver.trim() {
+        "" => format!("{} ({:?})", info.name, info.backend),
+        driver => format!("{} ({:?}, {driver})", info.name, info.backend),
+    }
+}

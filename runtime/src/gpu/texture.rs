@@ -1,0 +1,110 @@
+//! Uploads tables as textures and makes samplers, as the manifest describes them.
+
+use super::Gpu;
+use crate::render::RenderError;
+use crate::resource::Tables;
+use texgraph_compiler::manifest::{Filter, Format, Level, Resource, Sampler, Texture, ViewDimension, Wrap};
+
+/// A texture of a resource, all levels uploaded.
+pub fn upload(
+    gpu: &Gpu,
+    tables: &Tables,
+    index: usize,
+    resource: &Resource,
+    texture: &Texture,
+) -> Result<wgpu::TextureView, RenderError> {
+    let missing =
+        || RenderError::NoTable { resource: resource.name.clone(), field: texture.field.clone() };
+    let table = texture.table.as_ref().ok_or_else(missing)?;
+    let bytes = tables.get(index, &texture.field).ok_or_else(missing)?;
+    let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(&texture.name),
+        size: extent(table.width, table.height, table.layers),
+        mip_level_count: table.levels.len() as u32,
+        sample_count: 1,
+        dimension: match texture.view {
+            ViewDimension::D2 | ViewDimension::D2Array => wgpu::TextureDimension::D2,
+            ViewDimension::D3 => wgpu::TextureDimension::D3,
+        },
+        format: format(table.format),
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (number, level) in table.levels.iter().enumerate() {
+        let texels = level_bytes(level, bytes).ok_or_else(missing)?;
+        write_level(gpu, &target, number as u32, level, texels);
+    }
+    Ok(target.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(view_dimension(texture.view)),
+        ..wgpu::TextureViewDescriptor::default()
+    }))
+}
+
+fn level_bytes<'a>(level: &Level, bytes: &'a [u8]) -> Option<&'a [u8]> {
+    let length = u64::from(level.bytes_per_row) * u64::from(level.height) * u64::from(level.layers);
+    let start = usize::try_from(level.offset).ok()?;
+    bytes.get(start..start.checked_add(usize::try_from(length).ok()?)?)
+}
+
+fn write_level(gpu: &Gpu, target: &wgpu::Texture, number: u32, level: &Level, texels: &[u8]) {
+    let place = wgpu::TexelCopyTextureInfo {
+        texture: target,
+        mip_level: number,
+        origin: wgpu::Origin3d::ZERO,
+        aspect: wgpu::TextureAspect::All,
+    };
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(level.bytes_per_row),
+        rows_per_image: Some(level.height),
+    };
+    gpu.queue.write_texture(place, texels, layout, extent(level.width, level.height, level.layers));
+}
+
+fn extent(width: u32, height: u32, layers: u32) -> wgpu::Extent3d {
+    wgpu::Extent3d { width, height, depth_or_array_layers: layers }
+}
+
+/// A table's view shape in wgpu's words.
+pub fn view_dimension(view: ViewDimension) -> wgpu::TextureViewDimension {
+    match view {
+        ViewDimension::D2 => wgpu::TextureViewDimension::D2,
+        ViewDimension::D2Array => wgpu::TextureViewDimension::D2Array,
+        ViewDimension::D3 => wgpu::TextureViewDimension::D3,
+    }
+}
+
+fn format(format: Format) -> wgpu::TextureFormat {
+    match format {
+        Format::Rgba8UnormSrgb => wgpu::TextureFormat::Rgba8UnormSrgb,
+        Format::Rgba8Unorm => wgpu::TextureFormat::Rgba8Unorm,
+        Format::Rgba8Snorm => wgpu::TextureFormat::Rgba8Snorm,
+        Format::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
+        Format::R32Sint => wgpu::TextureFormat::R32Sint,
+        Format::Rgba32Sint => wgpu::TextureFormat::Rgba32Sint,
+    }
+}
+
+/// A sampler of the manifest.
+pub fn sampler(gpu: &Gpu, sampler: &Sampler) -> wgpu::Sampler {
+    let wrap = match sampler.wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+    };
+    let (filter, between, anisotropy) = match sampler.filter {
+        Filter::Linear => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear, sampler.anisotropy.clamp(1, 16)),
+        Filter::Nearest => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest, 1),
+    };
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some(&sampler.name),
+        address_mode_u: wrap,
+        address_mode_v: wrap,
+        address_mode_w: wrap,
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: between,
+        anisotropy_clamp: anisotropy,
+        ..wgpu::SamplerDescriptor::default()
+    })
+}

@@ -1,0 +1,23 @@
+//! The texgraph runtime: resources from files to tables, and programs to pixels.
+//!
+//! ```text
+//!  files ─project─▶ bytes ─resource─▶ tables ─▶ render ─▶ gpu (wgpu) ─▶ picture ─▶ PNG
+//!  NAME=VALUE ─settings─▶ uniform ──────────────┘   └────▶ cpu ────────┘
+//! ```
+//!
+//! [`project::Project`] says which files a program may read, [`resource::load`] makes the bytes of
+//! its textures, [`render::render`] makes a [`picture::Picture`] of one of its outputs. The GPU is
+//! the feature `gpu`; without it everything else stays.
+
+pub mod cpu;
+#[cfg(feature = "gpu")]
+pub mod gpu;
+pub mod picture;
+pub mod project;
+pub mod render;
+pub mod resource;
+pub mod settings;
+pub mod uniform;
+
+mod flat;
+mod nearest;

@@ -1,0 +1,31 @@
+//! `image`: one picture with its mip levels. Field `pixels`.
+
+use super::encoding::{self, Reader};
+use super::table::{self, Made};
+use super::{decode, pyramid};
+use crate::project::Project;
+use texgraph_compiler::diagnostic::{Diagnostic, Place};
+use texgraph_compiler::manifest::Encoding;
+
+/// Makes the texture.
+///
+/// # Errors
+/// The picture can't be read, or is larger than a texture may be.
+pub fn make(
+    project: &Project,
+    place: Place,
+    path: &str,
+    encoding: Encoding,
+) -> Result<Vec<Made>, Vec<Diagnostic>> {
+    let picture = decode::open(project, path, place)?;
+    let format = encoding::format(encoding, picture.is_deep());
+    table::check(place, path, format, picture.size, 1)?;
+    let reader = Reader::new(&picture, encoding);
+    Ok(vec![pyramid::build(
+        "pixels",
+        format,
+        picture.size,
+        1,
+        |_, x, y| reader.texel(x, y),
+    )])
+}

@@ -1,0 +1,133 @@
+//! Resources: from the recipes of a program to the bytes of its textures.
+//!
+//! One file per kind makes the bytes of its fields; [`make`] is the table of kinds. Everything here
+//! runs on the CPU, in parallel, and gives the same bytes for any number of threads and on any
+//! machine. Errors are found all at once and stand at the constructor calls.
+
+mod decode;
+mod encoding;
+mod image;
+mod indices;
+mod patterns;
+mod permutation;
+mod pyramid;
+mod table;
+
+pub use encoding::{SrgbEncoder, srgb_to_linear};
+
+use crate::project::Project;
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::sync::Arc;
+use table::Made;
+use texgraph_compiler::diagnostic::{Diagnostic, Place};
+use texgraph_compiler::graph::Graph;
+use texgraph_compiler::manifest::{Manifest, Recipe};
+
+/// The bytes of every texture of a program. Cloning shares them.
+#[derive(Clone, Debug, Default)]
+pub struct Tables {
+    entries: Vec<Entry>,
+}
+
+#[derive(Clone, Debug)]
+struct Entry {
+    resource: usize,
+    field: String,
+    bytes: Arc<[u8]>,
+}
+
+impl Tables {
+    /// The bytes of a field of a resource (an index into the manifest's `resources`), laid out as
+    /// the texture's `table` says.
+    pub fn get(&self, resource: usize, field: &str) -> Option<&Arc<[u8]>> {
+        let found = self
+            .entries
+            .iter()
+            .find(|entry| entry.resource == resource && entry.field == field);
+        found.map(|entry| &entry.bytes)
+    }
+
+    /// Adds or replaces the bytes of a field: how a package made ahead of time comes in.
+    pub fn insert(&mut self, resource: usize, field: &str, bytes: impl Into<Arc<[u8]>>) {
+        self.entries
+            .retain(|entry| entry.resource != resource || entry.field != field);
+        self.entries.push(Entry {
+            resource,
+            field: field.to_string(),
+            bytes: bytes.into(),
+        });
+    }
+
+    /// All fields: resource, name, bytes; in the order of the manifest.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &str, &[u8])> {
+        self.entries
+            .iter()
+            .map(|entry| (entry.resource, entry.field.as_str(), entry.bytes.as_ref()))
+    }
+}
+
+/// Makes the textures of all resources that the program reads, and fills in
+/// [`texgraph_compiler::manifest::Texture::table`] (without a file).
+///
+/// # Errors
+/// Everything that is wrong with any resource, in the order of the resources.
+pub fn load(
+    graph: &Graph,
+    manifest: &mut Manifest,
+    project: &Project,
+) -> Result<Tables, Vec<Diagnostic>> {
+    let made: Vec<Result<Vec<Made>, Vec<Diagnostic>>> = manifest
+        .resources
+        .par_iter()
+        .enumerate()
+        .map(|(index, resource)| {
+            if resource.textures.is_empty() {
+                return Ok(Vec::new());
+            }
+            let place = graph
+                .resources
+                .get(index)
+                .map(|resource| resource.place)
+                .unwrap_or_default();
+            make(project, place, &resource.recipe)
+        })
+        .collect();
+    let mut tables = Tables::default();
+    let mut errors = Vec::new();
+    for (index, made) in made.into_iter().enumerate() {
+        match made {
+            Ok(made) => enter(index, made, manifest, &mut tables),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() {
+        Ok(tables)
+    } else {
+        Err(errors)
+    }
+}
+
+/// The kinds: which file makes what a recipe asks for.
+fn make(project: &Project, place: Place, recipe: &Recipe) -> Result<Vec<Made>, Vec<Diagnostic>> {
+    match recipe {
+        Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
+        Recipe::Patterns {
+            paths,
+            grid,
+            encoding,
+        } => patterns::make(project, place, paths, *grid, *encoding),
+        Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
+        Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+    }
+}
+
+/// Keeps the fields that the shader reads, in the manifest's order.
+fn enter(index: usize, mut made: Vec<Made>, manifest: &mut Manifest, tables: &mut Tables) {
+    for texture in &mut manifest.resources[index].textures {
+        if let Some(at) = made.iter().position(|made| made.field == texture.field) {
+            let Made { table, bytes, .. } = made.swap_remove(at);
+            texture.table = Some(table);
+            tables.insert(index, &texture.field, bytes);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! `patterns`: interchangeable pictures, one layer each, with a mip chain of its own. Field
+//! `layers`.
+//!
+//! Layers are what keeps a pattern's filter from reading its neighbour: the sub-textures that
+//! Lefebvre & Neyret 2003, §5.2, ask hardware for. They come from the cells of one picture, row by
+//! row, or from a list of files.
+
+use super::decode::{self, Decoded};
+use super::encoding::{self, Reader};
+use super::pyramid;
+use super::table::{self, Made};
+use crate::project::Project;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
+use texgraph_compiler::manifest::Encoding;
+
+/// Makes the texture: of one picture cut by `grid` (columns, rows), or of several pictures.
+///
+/// # Errors
+/// All pictures that can't be read, or else a grid that does not divide the picture, sizes that
+/// differ, or more than a texture may hold.
+pub fn make(
+    project: &Project,
+    place: Place,
+    paths: &[String],
+    grid: [u32; 2],
+    encoding: Encoding,
+) -> Result<Vec<Made>, Vec<Diagnostic>> {
+    let count = paths.len() as u64 * u64::from(grid[0]) * u64::from(grid[1]);
+    if count > u64::from(table::MAX_LAYERS) {
+        return Err(vec![resources::too_many_layers(
+            place,
+            count,
+            table::MAX_LAYERS,
+        )]);
+    }
+    let Some(first) = paths.first().filter(|_| count > 0) else {
+        return Err(vec![resources::no_table(
+            place,
+            "there are no patterns",
+            "at least one is needed",
+        )]);
+    };
+    let pictures = open_all(project, place, paths)?;
+    let cell = cell(place, paths, &pictures, grid)?;
+    let format = encoding::format(encoding, pictures.iter().any(Decoded::is_deep));
+    table::check(place, first, format, cell, count as u32)?;
+    let readers: Vec<Reader<'_>> = pictures
+        .iter()
+        .map(|picture| Reader::new(picture, encoding))
+        .collect();
+    let cells = grid[0] * grid[1];
+    Ok(vec![pyramid::build(
+        "layers",
+        format,
+        cell,
+        count as u32,
+        |layer, x, y| {
+            let (picture, within) = (layer / cells, layer % cells);
+            let (column, row) = (within % grid[0], within / grid[0]);
+            readers[picture as usize].texel(column * cell[0] + x, row * cell[1] + y)
+        },
+    )])
+}
+
+fn open_all(
+    project: &Project,
+    place: Place,
+    paths: &[String],
+) -> Result<Vec<Decoded>, Vec<Diagnostic>> {
+    let opened: Vec<_> = paths
+        .par_iter()
+        .map(|path| decode::open(project, path, place))
+        .collect();
+    let (mut pictures, mut errors) = (Vec::new(), Vec::new());
+    for result in opened {
+        match result {
+            Ok(picture) => pictures.push(picture),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() {
+        Ok(pictures)
+    } else {
+        Err(errors)
+    }
+}
+
+/// The size of one pattern in texels.
+fn cell(
+    place: Place,
+    paths: &[String],
+    pictures: &[Decoded],
+    grid: [u32; 2],
+) -> Result<[u32; 2], Vec<Diagnostic>> {
+    let named: Vec<(&str, [u32; 2])> = paths
+        .iter()
+        .map(String::as_str)
+        .zip(pictures.iter().map(|picture| picture.size))
+        .collect();
+    let Some(&first) = named.first() else {
+        return Ok([1, 1]);
+    };
+    let odd = named.iter().filter(|(_, size)| *size != first.1);
+    let errors: Vec<Diagnostic> = odd
+        .map(|other| resources::sizes_differ(place, first, *other))
+        .collect();
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let (path, size) = first;
+    if size[0] % grid[0] != 0 || size[1] % grid[1] != 0 {
+        return Err(vec![resources::uneven_grid(place, path, size, grid)]);
+    }
+    Ok([size[0] / grid[0], size[1] / grid[1]])
+}

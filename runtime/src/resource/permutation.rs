@@ -1,0 +1,65 @@
+//! `permutation`: four independent permutations of 0..size. Field `table`: texel i holds
+//! (σ₀(i), σ₁(i), σ₂(i), σ₃(i)).
+//!
+//! Each is a Fisher–Yates shuffle of 0..size that walks from the last place down: place i is
+//! swapped with place ⌊r · (i + 1) / 2³²⌋, where r is the first word of the language's own hash,
+//! pcg4d, of (i, channel, seed, [`SALT`]). These bits never change: pictures depend on them.
+
+use super::table::Made;
+use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
+use texgraph_compiler::manifest::Format;
+
+/// The largest table; its width must fit a texture of any GPU.
+const MAX_SIZE: u32 = 4096;
+
+/// Keeps these random numbers apart from those of a program that hashes (i, channel, seed): "perm".
+const SALT: u32 = 0x7065_726d;
+
+/// Makes the texture.
+///
+/// # Errors
+/// The size is not 2 to 4096.
+pub fn make(place: Place, size: u32, seed: i32) -> Result<Vec<Made>, Vec<Diagnostic>> {
+    if !(2..=MAX_SIZE).contains(&size) {
+        let message = format!("a permutation of {size} numbers can't be made");
+        return Err(vec![resources::no_table(
+            place,
+            message,
+            format!("its size is 2 to {MAX_SIZE}"),
+        )]);
+    }
+    let channels: [Vec<i32>; 4] = [0, 1, 2, 3].map(|channel| shuffle(size, channel, seed));
+    let texels = (0..size as usize).flat_map(|i| channels.each_ref().map(|channel| channel[i]));
+    Ok(vec![Made::integers(
+        "table",
+        Format::Rgba32Sint,
+        [size, 1],
+        texels,
+    )])
+}
+
+fn shuffle(size: u32, channel: u32, seed: i32) -> Vec<i32> {
+    let mut places: Vec<i32> = (0..size as i32).collect();
+    for i in (1..size).rev() {
+        let [random, ..] = pcg4d([i, channel, seed as u32, SALT]);
+        let other = (u64::from(random) * u64::from(i + 1)) >> 32;
+        places.swap(i as usize, other as usize);
+    }
+    places
+}
+
+/// Four random words of four words (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+fn pcg4d(words: [u32; 4]) -> [u32; 4] {
+    let mixed = mix(words.map(|word| word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)));
+    mix(mixed.map(|word| word ^ (word >> 16)))
+}
+
+/// Adds to each word the product of two others, one after the other.
+fn mix(words: [u32; 4]) -> [u32; 4] {
+    let [mut x, mut y, mut z, mut w] = words;
+    x = x.wrapping_add(y.wrapping_mul(w));
+    y = y.wrapping_add(z.wrapping_mul(x));
+    z = z.wrapping_add(x.wrapping_mul(y));
+    w = w.wrapping_add(y.wrapping_mul(z));
+    [x, y, z, w]
+}

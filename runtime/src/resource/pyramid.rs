@@ -1,0 +1,192 @@
+//! Mip pyramids: every level is the mean of what it covers, for sizes that are no power of two too.
+//!
+//! WebGPU's level l of a side of n texels has max(1, ⌊n / 2^l⌋) texels. A texel of an odd level's
+//! successor covers a little more than two texels, so it weighs three by the area it covers (a
+//! polyphase box filter); every level then keeps the mean of level 0. Each level is computed from
+//! the one above in f32, before that one is rounded to its texel format.
+
+use super::encoding::Writer;
+use super::table::{self, Made};
+use glam::Vec4;
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
+use texgraph_compiler::manifest::{Format, Table};
+
+/// Builds all levels of all layers. `texel(layer, x, y)` gives level 0; it is read several times
+/// rather than stored, for a large picture's floats take four times its bytes.
+pub fn build(
+    field: &'static str,
+    format: Format,
+    size: [u32; 2],
+    layers: u32,
+    texel: impl Fn(u32, u32, u32) -> Vec4 + Sync,
+) -> Made {
+    let table = table::layout(format, size, layers, true);
+    let mut bytes = vec![0; table::bytes(&table) as usize];
+    let writer = Writer::new(format);
+    by_layer(&table, &mut bytes)
+        .into_par_iter()
+        .enumerate()
+        .for_each(|(layer, levels)| {
+            write_layer(&writer, size, levels, |x, y| texel(layer as u32, x, y));
+        });
+    Made {
+        field,
+        table,
+        bytes,
+    }
+}
+
+/// The bytes of every level, for each layer.
+fn by_layer<'a>(table: &Table, mut bytes: &'a mut [u8]) -> Vec<Vec<&'a mut [u8]>> {
+    let mut layers: Vec<Vec<&mut [u8]>> = (0..table.layers).map(|_| Vec::new()).collect();
+    for level in &table.levels {
+        let length = level.bytes_per_row as usize * level.height as usize;
+        for layer in &mut layers {
+            let (first, rest) = bytes.split_at_mut(length);
+            layer.push(first);
+            bytes = rest;
+        }
+    }
+    layers
+}
+
+/// Writes one layer's levels, the largest first.
+fn write_layer(
+    writer: &Writer,
+    size: [u32; 2],
+    levels: Vec<&mut [u8]>,
+    texel: impl Fn(u32, u32) -> Vec4 + Sync,
+) {
+    let mut above: Option<Plane> = None;
+    for (index, bytes) in levels.into_iter().enumerate() {
+        if index == 0 {
+            write_level(writer, size[0], bytes, &texel);
+            continue;
+        }
+        let plane = match &above {
+            None => halve(size, &texel),
+            Some(plane) => halve(plane.size, |x, y| plane.texel(x, y)),
+        };
+        write_level(writer, plane.size[0], bytes, |x, y| plane.texel(x, y));
+        above = Some(plane);
+    }
+}
+
+fn write_level(
+    writer: &Writer,
+    width: u32,
+    bytes: &mut [u8],
+    texel: impl Fn(u32, u32) -> Vec4 + Sync,
+) {
+    let texel_bytes = writer.format().bytes() as usize;
+    bytes
+        .par_chunks_mut(width as usize * texel_bytes)
+        .enumerate()
+        .for_each(|(y, row)| {
+            for (x, slot) in row.chunks_exact_mut(texel_bytes).enumerate() {
+                writer.write(texel(x as u32, y as u32), slot);
+            }
+        });
+}
+
+/// One level in floats.
+struct Plane {
+    size: [u32; 2],
+    texels: Vec<Vec4>,
+}
+
+impl Plane {
+    fn texel(&self, x: u32, y: u32) -> Vec4 {
+        self.texels[y as usize * self.size[0] as usize + x as usize]
+    }
+}
+
+/// The next smaller level.
+fn halve(size: [u32; 2], texel: impl Fn(u32, u32) -> Vec4 + Sync) -> Plane {
+    let next = size.map(|side| (side / 2).max(1));
+    let mut texels = vec![Vec4::ZERO; next[0] as usize * next[1] as usize];
+    let columns: Vec<Taps> = (0..next[0]).map(|x| Taps::new(size[0], x)).collect();
+    texels
+        .par_chunks_mut(next[0] as usize)
+        .enumerate()
+        .for_each(|(y, row)| {
+            let rows = Taps::new(size[1], y as u32);
+            for (slot, columns) in row.iter_mut().zip(&columns) {
+                *slot = rows.sum(|y| columns.sum(|x| texel(x, y)));
+            }
+        });
+    Plane { size: next, texels }
+}
+
+/// The texels that one texel of the next level covers along an axis, with their shares.
+struct Taps {
+    first: u32,
+    count: usize,
+    weights: [f32; 3],
+}
+
+impl Taps {
+    /// For texel `i` of the level after one of `n` texels.
+    fn new(n: u32, i: u32) -> Taps {
+        let (m, i64) = (f64::from(n / 2), f64::from(i));
+        let share = |x: f64| (x / f64::from(n)) as f32;
+        match n {
+            1 => Taps {
+                first: 0,
+                count: 1,
+                weights: [1.0, 0.0, 0.0],
+            },
+            n if n % 2 == 0 => Taps {
+                first: 2 * i,
+                count: 2,
+                weights: [0.5, 0.5, 0.0],
+            },
+            _ => Taps {
+                first: 2 * i,
+                count: 3,
+                weights: [share(m - i64), share(m), share(i64 + 1.0)],
+            },
+        }
+    }
+
+    fn sum(&self, texel: impl Fn(u32) -> Vec4) -> Vec4 {
+        let taps = (self.first..).zip(&self.weights[..self.count]);
+        taps.fold(Vec4::ZERO, |sum, (at, weight)| sum + texel(at) * *weight)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Taps, halve};
+    use glam::Vec4;
+
+    #[test]
+    fn shares_cover_every_texel_equally() {
+        for n in [1, 2, 3, 4, 5, 7, 9, 31, 100, 101, 8191] {
+            let mut covered = vec![0.0; n as usize];
+            let m = (n / 2).max(1);
+            for i in 0..m {
+                let taps = Taps::new(n, i);
+                for k in 0..taps.count {
+                    covered[taps.first as usize + k] += f64::from(taps.weights[k]);
+                }
+            }
+            let even = f64::from(m) / f64::from(n);
+            assert!(
+                covered.iter().all(|share| (share - even).abs() < 1e-6),
+                "{n}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_odd_level_keeps_the_mean() {
+        let value = |x: u32, y: u32| ((x * 7 + y * 13) % 11) as f32;
+        let plane = halve([5, 3], |x, y| Vec4::splat(value(x, y)));
+        assert_eq!(plane.size, [2, 1]);
+        let before: f32 = (0..15).map(|i| value(i % 5, i / 5)).sum::<f32>() / 15.0;
+        let after = (plane.texels[0].x + plane.texels[1].x) / 2.0;
+        assert!((before - after).abs() < 1e-5);
+    }
+}
