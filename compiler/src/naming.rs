@@ -4,7 +4,7 @@
 //! is only ever given placeholders (`z17z`), which it leaves alone, and the names of our choice
 //! replace them in the text it writes (see [`Names::apply`]).
 
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
 /// `_` (tools that import WGSL refuse it otherwise), no leading `_`.
@@ -49,6 +49,8 @@ fn suffix(mut n: usize) -> String {
 #[derive(Default, Clone)]
 pub struct Scope {
     taken: FxHashSet<String>,
+    /// How many suffixes of a name have been tried.
+    tried: FxHashMap<String, usize>,
     /// Names beginning with this belong to the module.
     module: String,
 }
@@ -56,7 +58,7 @@ pub struct Scope {
 impl Scope {
     /// A scope inside a module all of whose names begin with `module`.
     pub fn inside(module: &str) -> Scope {
-        Scope { taken: FxHashSet::default(), module: module.to_owned() }
+        Scope { module: module.to_owned(), ..Scope::default() }
     }
 
     /// The wished name, or one like it that is free here.
@@ -67,10 +69,14 @@ impl Scope {
         if module || is_reserved(&base) {
             base = format!("{base}_value");
         }
-        let free = (0..).map(|n| if n == 0 { base.clone() } else { format!("{base}_{}", suffix(n)) });
-        let name = { free }.find(|name| !self.taken.contains(name)).unwrap_or(base);
-        self.taken.insert(name.clone());
-        name
+        let tried = self.tried.entry(base.clone()).or_default();
+        loop {
+            let name = if *tried == 0 { base.clone() } else { format!("{base}_{}", suffix(*tried)) };
+            *tried += 1;
+            if self.taken.insert(name.clone()) {
+                return name;
+            }
+        }
     }
 }
 

@@ -10,8 +10,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         (distance, candidate)
     });
     let near = distances.filter(|(distance, _)| *distance <= allowed);
-    near.min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
+    near.min_by_key(|(distance, _)| *distance).map(|(_, candidate)| candidate)
 }
 
 #[cfg(test)]
@@ -20,10 +19,7 @@ mod tests {
 
     #[test]
     fn slips_are_mended_and_strangers_are_not() {
-        assert_eq!(
-            nearest("gras.png", ["sand.png", "grass.png"]),
-            Some("grass.png")
-        );
+        assert_eq!(nearest("gras.png", ["sand.png", "grass.png"]), Some("grass.png"));
         assert_eq!(nearest("Grass.PNG", ["grass.png"]), Some("grass.png"));
         assert_eq!(nearest("meadow", ["sand", "rock"]), None);
         assert_eq!(nearest("", ["sand"]), None);

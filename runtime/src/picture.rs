@@ -39,7 +39,9 @@ impl Picture {
     pub fn to_png(&self) -> Result<Vec<u8>, PictureError> {
         let wanted = u64::from(self.size[0]) * u64::from(self.size[1]);
         if self.pixels.len() as u64 != wanted {
-            return Err(PictureError { reason: format!("{} pixels, where {wanted} belong", self.pixels.len()) });
+            return Err(PictureError {
+                reason: format!("{} pixels, where {wanted} belong", self.pixels.len()),
+            });
         }
         if self.is_color { self.color_png() } else { self.data_png() }
     }
@@ -138,7 +140,8 @@ mod tests {
 
     #[test]
     fn colour_is_straight_and_encoded() {
-        let file = decoded(&picture(&[[0.25, 0.0, 0.0, 0.5], [1.0, 0.5, f32::NAN, 1.0], [1.0; 4], [0.0; 4]], true));
+        let file =
+            decoded(&picture(&[[0.25, 0.0, 0.0, 0.5], [1.0, 0.5, f32::NAN, 1.0], [1.0; 4], [0.0; 4]], true));
         assert_eq!(file.color(), image::ColorType::Rgba8);
         let expected = [188, 0, 0, 128, 255, 188, 0, 255, 255, 255, 255, 255, 0, 0, 0, 0];
         assert_eq!(file.as_bytes(), expected);

@@ -30,15 +30,10 @@ pub struct Project {
 impl Project {
     /// The project of a main `.tex` file. Nothing is read yet.
     pub fn new(main: &Path, allow_outside: bool) -> Project {
-        let parent = main
-            .parent()
-            .filter(|parent| !parent.as_os_str().is_empty());
+        let parent = main.parent().filter(|parent| !parent.as_os_str().is_empty());
         Project {
             folder: parent.unwrap_or(Path::new(".")).to_path_buf(),
-            main: main
-                .file_name()
-                .map(|name| name.to_string_lossy().into_owned())
-                .unwrap_or_default(),
+            main: main.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
             allow_outside,
         }
     }
@@ -59,10 +54,7 @@ impl Project {
     /// The path leaves the folder, or names nothing, no regular file, one that can't be opened, or
     /// one of more than [`MAX_FILE`] bytes.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, FileError> {
-        let fail = |problem| FileError {
-            path: path.to_string(),
-            problem,
-        };
+        let fail = |problem| FileError { path: path.to_string(), problem };
         let file = self.open(path).map_err(fail)?;
         let bytes = read_at_most(file, MAX_FILE + 1).map_err(fail)?;
         if bytes.len() as u64 > MAX_FILE {
@@ -77,11 +69,9 @@ impl Project {
         if !self.allow_outside && !named_by_user && leaves_folder(path) {
             return Err(Problem::Outside { link: false });
         }
-        let full =
-            fs::canonicalize(self.folder.join(path)).map_err(|error| self.problem(path, &error))?;
+        let full = fs::canonicalize(self.folder.join(path)).map_err(|error| self.problem(path, &error))?;
         if !self.allow_outside && !named_by_user {
-            let folder =
-                fs::canonicalize(&self.folder).map_err(|error| self.problem(path, &error))?;
+            let folder = fs::canonicalize(&self.folder).map_err(|error| self.problem(path, &error))?;
             if !full.starts_with(folder) {
                 return Err(Problem::Outside { link: true });
             }
@@ -91,9 +81,7 @@ impl Project {
             return Err(Problem::Folder);
         }
         if !kind.is_file() {
-            return Err(Problem::Unreadable {
-                reason: "it is not a regular file".into(),
-            });
+            return Err(Problem::Unreadable { reason: "it is not a regular file".into() });
         }
         File::open(&full).map_err(|error| self.problem(path, &error))
     }
@@ -101,44 +89,26 @@ impl Project {
     /// What an error of the file system means for the author.
     fn problem(&self, path: &str, error: &std::io::Error) -> Problem {
         match error.kind() {
-            ErrorKind::NotFound | ErrorKind::NotADirectory => Problem::Missing {
-                near: self.near(path),
-            },
-            _ => Problem::Unreadable {
-                reason: error.to_string(),
-            },
+            ErrorKind::NotFound | ErrorKind::NotADirectory => Problem::Missing { near: self.near(path) },
+            _ => Problem::Unreadable { reason: error.to_string() },
         }
     }
 
     /// A file of the same folder with a similar name, as the program would write it.
     fn near(&self, path: &str) -> Option<String> {
-        let (folder, name) = path
-            .rsplit_once('/')
-            .map_or(("", path), |(folder, name)| (folder, name));
+        let (folder, name) = path.rsplit_once('/').map_or(("", path), |(folder, name)| (folder, name));
         let entries = fs::read_dir(self.folder.join(folder)).ok()?;
-        let names = entries
-            .flatten()
-            .filter_map(|entry| entry.file_name().into_string().ok());
+        let names = entries.flatten().filter_map(|entry| entry.file_name().into_string().ok());
         let mut names: Vec<String> = names.collect();
         names.sort();
         let found = nearest(name, names.iter().map(String::as_str))?;
-        Some(if folder.is_empty() {
-            found.to_string()
-        } else {
-            format!("{folder}/{found}")
-        })
+        Some(if folder.is_empty() { found.to_string() } else { format!("{folder}/{found}") })
     }
 }
 
 impl Loader for Project {
     fn load(&self, path: &str) -> Result<String, String> {
-        let fail = |problem| {
-            FileError {
-                path: path.to_string(),
-                problem,
-            }
-            .to_string()
-        };
+        let fail = |problem| FileError { path: path.to_string(), problem }.to_string();
         let file = self.open(path).map_err(fail)?;
         let bytes = read_at_most(file, MAX_TEXT).map_err(fail)?;
         text(bytes).map_err(|reason| fail(Problem::Unreadable { reason }))
@@ -155,10 +125,7 @@ fn text(bytes: Vec<u8>) -> Result<String, String> {
             bytes.truncate(at.valid_up_to());
             return Ok(String::from_utf8_lossy(&bytes).into_owned());
         }
-        Err(format!(
-            "it is not UTF-8 text (byte {} is where that ends)",
-            at.valid_up_to()
-        ))
+        Err(format!("it is not UTF-8 text (byte {} is where that ends)", at.valid_up_to()))
     })
 }
 
@@ -166,9 +133,7 @@ fn read_at_most(file: File, limit: u64) -> Result<Vec<u8>, Problem> {
     let mut bytes = Vec::new();
     match file.take(limit).read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
-        Err(error) => Err(Problem::Unreadable {
-            reason: error.to_string(),
-        }),
+        Err(error) => Err(Problem::Unreadable { reason: error.to_string() }),
     }
 }
 
@@ -233,10 +198,7 @@ impl fmt::Display for FileError {
             }
             Problem::Missing { near: None } => write!(f, "there is no file `{path}`"),
             Problem::Outside { link: false } => {
-                write!(
-                    f,
-                    "`{path}` lies outside the program's folder; allow that with --allow-outside"
-                )
+                write!(f, "`{path}` lies outside the program's folder; allow that with --allow-outside")
             }
             Problem::Outside { link: true } => write!(
                 f,
@@ -257,16 +219,7 @@ mod tests {
 
     #[test]
     fn paths_that_leave_are_seen_by_their_text() {
-        for path in [
-            "../x",
-            "a/../../x",
-            "/etc/passwd",
-            "\\x",
-            "C:\\x",
-            "c:x",
-            "a\\..\\..\\x",
-            "//host/x",
-        ] {
+        for path in ["../x", "a/../../x", "/etc/passwd", "\\x", "C:\\x", "c:x", "a\\..\\..\\x", "//host/x"] {
             assert!(leaves_folder(path), "{path}");
         }
         for path in ["x", "a/x", "a/../x", "./x", "..x", "a/...", "x:y/z"] {

@@ -54,7 +54,9 @@ impl Request {
             return Err(RenderError::NotFinite);
         }
         let outputs = &program.manifest.outputs;
-        let output = outputs.get(self.output).ok_or(RenderError::NoOutput { output: self.output, outputs: outputs.len() })?;
+        let output = outputs
+            .get(self.output)
+            .ok_or(RenderError::NoOutput { output: self.output, outputs: outputs.len() })?;
         let count = self.size[0] as usize * self.size[1] as usize;
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| RenderError::Memory { size: self.size })?;
@@ -104,7 +106,9 @@ impl Renderer {
     pub fn new(backend: Backend) -> Result<Renderer, RenderError> {
         match backend {
             Backend::Auto | Backend::Cpu => Ok(Renderer {}),
-            Backend::Gpu => Err(RenderError::NoAdapter { reason: "texgraph was built without the feature `gpu`".into() }),
+            Backend::Gpu => {
+                Err(RenderError::NoAdapter { reason: "texgraph was built without the feature `gpu`".into() })
+            }
         }
     }
 
@@ -203,7 +207,10 @@ impl fmt::Display for RenderError {
             }
             RenderError::Memory { size: [width, height] } => {
                 let gibibytes = f64::from(*width) * f64::from(*height) * 16.0 / f64::from(1 << 30);
-                write!(f, "there is no memory for {width}×{height} pixels ({gibibytes:.1} GiB); render parts of it")
+                write!(
+                    f,
+                    "there is no memory for {width}×{height} pixels ({gibibytes:.1} GiB); render parts of it"
+                )
             }
             RenderError::NotFinite => write!(f, "the region and the time must be finite numbers"),
             RenderError::NoOutput { output, outputs } => {

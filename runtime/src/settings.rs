@@ -86,7 +86,9 @@ fn read(param: &Param, text: &str) -> Result<Value, SettingError> {
         return Err(wrong());
     }
     let value = match param.ty.scalar {
-        Scalar::Float => all(&parts, |part| part.parse().ok().filter(|f: &f32| f.is_finite())).map(Value::Float),
+        Scalar::Float => {
+            all(&parts, |part| part.parse().ok().filter(|f: &f32| f.is_finite())).map(Value::Float)
+        }
         Scalar::Int => all(&parts, |part| part.parse().ok()).map(Value::Int),
         Scalar::Bool => all(&parts, |part| part.parse().ok()).map(Value::Bool),
     };
@@ -112,7 +114,9 @@ fn color(digits: &str) -> Option<[f32; 4]> {
 
 fn clamp(value: &Value, range: Option<&(Value, Value)>) -> Value {
     match (value, range) {
-        (Value::Float(x), Some((Value::Float(low), Value::Float(high)))) => Value::Float(clamp_each(x, low, high)),
+        (Value::Float(x), Some((Value::Float(low), Value::Float(high)))) => {
+            Value::Float(clamp_each(x, low, high))
+        }
         (Value::Int(x), Some((Value::Int(low), Value::Int(high)))) => Value::Int(clamp_each(x, low, high)),
         _ => value.clone(),
     }
@@ -158,7 +162,9 @@ impl SettingError {
         let (one, example) = match param.ty.scalar {
             Scalar::Float => ("a number", ["0.5", "0.5,1", "0.5,1,2", "0.5,1,2,1` or `#8d8f94"]),
             Scalar::Int => ("a whole number", ["12", "12,3", "12,3,4", "12,3,4,5"]),
-            Scalar::Bool => ("true or false", ["true", "true,false", "true,false,true", "true,false,true,false"]),
+            Scalar::Bool => {
+                ("true or false", ["true", "true,false", "true,false,true", "true,false,true,false"])
+            }
         };
         let width = usize::from(param.ty.width.clamp(1, 4));
         let takes = match width {
@@ -177,7 +183,9 @@ impl fmt::Display for SettingError {
                 write!(f, "there is no param `{name}`; is `{near}` meant?")
             }
             SettingError::Unknown { name, near: None } => write!(f, "there is no param `{name}`"),
-            SettingError::Wrong { name, takes, text } => write!(f, "`{name}` takes {takes}; `{text}` is not that"),
+            SettingError::Wrong { name, takes, text } => {
+                write!(f, "`{name}` takes {takes}; `{text}` is not that")
+            }
         }
     }
 }

@@ -12,7 +12,11 @@ fn image(path: &str, encoding: Encoding) -> Recipe {
 }
 
 fn patterns(paths: &[&str], grid: [u32; 2]) -> Recipe {
-    Recipe::Patterns { paths: paths.iter().map(ToString::to_string).collect(), grid, encoding: Encoding::Linear }
+    Recipe::Patterns {
+        paths: paths.iter().map(ToString::to_string).collect(),
+        grid,
+        encoding: Encoding::Linear,
+    }
 }
 
 /// The one table of one recipe.
@@ -150,7 +154,8 @@ fn pattern_mistakes_are_told() {
     assert_eq!(codes(folder.path(), vec![patterns(&["b.png"], [257, 1])]), ["E0509"]);
     assert_eq!(codes(folder.path(), vec![patterns(&["b.png"], [0, 4])]), ["E0510"]);
     assert_eq!(codes(folder.path(), vec![patterns(&[], [1, 1])]), ["E0510"]);
-    let errors = load_recipes(folder.path(), vec![patterns(&["a.png"], [2, 2])]).expect_err("the grid is uneven");
+    let errors =
+        load_recipes(folder.path(), vec![patterns(&["a.png"], [2, 2])]).expect_err("the grid is uneven");
     assert!(errors[0].message.contains("2×2") && errors[0].message.contains("5×4"), "{}", errors[0].message);
     assert!(errors[0].help.as_deref().is_some_and(|help| help.contains("4×4")));
 }
@@ -219,7 +224,11 @@ fn every_truncation_is_an_error() {
         let kept = [0, 1, 10, 100, whole.len() / 4, whole.len() / 2, whole.len() * 9 / 10];
         for length in kept {
             fs::write(&path, &whole[..length]).expect("it is written");
-            assert_eq!(codes(folder.path(), vec![image(name, Encoding::Srgb)]), ["E0505"], "{name}, {length} bytes");
+            assert_eq!(
+                codes(folder.path(), vec![image(name, Encoding::Srgb)]),
+                ["E0505"],
+                "{name}, {length} bytes"
+            );
         }
     }
 }

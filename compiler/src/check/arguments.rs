@@ -195,7 +195,9 @@ impl<'a> Checker<'a> {
         let module = std::mem::replace(&mut f.module, head.module);
         let dims = std::mem::replace(&mut f.dims, bound.dims.clone());
         let scopes = std::mem::replace(&mut f.scopes, vec![scope]);
+        f.foreign += 1;
         let wire = self.expr(f, default);
+        f.foreign -= 1;
         (f.module, f.dims, f.scopes) = (module, dims, scopes);
         wire
     }

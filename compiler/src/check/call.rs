@@ -9,14 +9,14 @@ use crate::graph::{Axis, Level, Operation, Scalar, Type, Value};
 use crate::library::Callable;
 use crate::resource::{KINDS, LATER};
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Argument, Call, Expr, ExprKind, ItemKind, Span};
+use texgraph_grammar::syntax::{Argument, Call, Expr, ExprKind, Span};
 
 impl<'a> Checker<'a> {
     /// `name<n>(arguments)`
     pub(super) fn call(&mut self, f: &mut Frame<'a>, call: &'a Call, span: Span) -> Wire {
         let place = self.place(f, span);
         let given = self.given(f, &call.arguments);
-        let candidates = self.callables(f.module, &call.name.text);
+        let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty()
             && let Some(wire) = self.special(f, call, &given, place)
         {
@@ -39,7 +39,7 @@ impl<'a> Checker<'a> {
         }
         let receiver = Given { name: None, wire: base, place: base_place, word: None };
         let given: Vec<Given<'a>> = std::iter::once(receiver).chain(arguments).collect();
-        let candidates = self.callables(f.module, &call.name.text);
+        let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty() {
             if let Some(wire) = self.special(f, call, &given, place) {
                 return wire;
@@ -76,7 +76,7 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name may mean in a file, nearest first.
-    fn callables(&self, module: usize, name: &str) -> Vec<Callable> {
+    fn callables_of(&self, module: usize, name: &str) -> Vec<Callable> {
         let mut found = Vec::new();
         if module >= self.library.modules().len() {
             found.extend(self.own_callables(module, name));
@@ -92,12 +92,7 @@ impl<'a> Checker<'a> {
     }
 
     fn own_callables(&self, module: usize, name: &str) -> Vec<Callable> {
-        let items = self.modules[module].tree.items.iter().enumerate();
-        let named = items.filter(|(_, item)| match &item.kind {
-            ItemKind::Node(node) | ItemKind::Texture { node, .. } => node.name.text == name,
-            _ => false,
-        });
-        named.map(|(item, _)| Callable::Node(module, item)).collect()
+        self.callables[module].get(name).cloned().unwrap_or_default()
     }
 
     fn head(&self, callable: Callable) -> Option<Head<'a>> {

@@ -55,6 +55,9 @@ impl<'a> Checker<'a> {
             f.failed = true;
             return Wire::Unknown;
         }
+        if let Some((_, width)) = f.dims.iter().find(|(dim, _)| dim == name) {
+            return Wire::Value(f.builder.constant(Constant::ints(&[i32::from(*width)])));
+        }
         match self.global(f.module, name) {
             Some(global) => self.global_wire(f, global),
             None if name == "none" => Wire::None,
@@ -95,33 +98,50 @@ impl<'a> Checker<'a> {
     }
 
     fn postfix(&mut self, f: &mut Frame<'a>, base: &'a Expr, links: &'a [Postfix]) -> Wire {
-        let mut links = links.iter();
-        let mut place = self.place(f, base.span);
-        let mut wire = match (&base.kind, self.alias_of(f, base)) {
-            (ExprKind::Name(alias), Some(module)) => match links.next() {
-                Some(Postfix::Field(name)) => self.imported_value(f, alias, module, name),
-                Some(Postfix::Method(call, span)) => self.imported_call(f, alias, module, call, *span),
-                _ => self.report(f, names::alias_as_value(place, alias)),
-            },
-            _ => self.expr(f, base),
+        let (mut next, mut wire) = match f.progress.get(&links.as_ptr()).filter(|_| f.foreign == 0) {
+            Some((next, wire)) => (*next, wire.clone()),
+            None => self.first_link(f, base, links),
         };
-        for link in links {
+        while let Some(link) = links.get(next) {
             // A word that something is asked of is a name that nobody declared.
             if let Wire::Word(word, at) = &wire {
                 wire = self.unknown_value(f, &word.clone(), *at);
             }
-            wire = match link {
-                Postfix::Field(name) => self.field(f, wire, name),
-                Postfix::Method(call, span) => self.method(f, wire, place, call, *span),
-                Postfix::Index(index, span) => self.index(f, wire, index, *span),
+            let before = links[..next].last().map_or(base.span, end_of);
+            let place = self.place(f, base.span.to(before));
+            let waiting = f.waiting.len();
+            let result = match link {
+                Postfix::Field(name) => self.field(f, wire.clone(), name),
+                Postfix::Method(call, span) => self.method(f, wire.clone(), place, call, *span),
+                Postfix::Index(index, span) => self.index(f, wire.clone(), index, *span),
             };
-            let end = match link {
-                Postfix::Field(name) => name.span,
-                Postfix::Method(_, span) | Postfix::Index(_, span) => *span,
-            };
-            place.span = place.span.to(end);
+            if f.waiting.len() > waiting {
+                if f.foreign == 0 && !matches!(wire, Wire::Unknown) {
+                    f.progress.insert(links.as_ptr(), (next, wire));
+                }
+                return Wire::Unknown;
+            }
+            wire = result;
+            next += 1;
         }
         wire
+    }
+
+    /// The base, or an item of an imported file together with the link that names it.
+    fn first_link(&mut self, f: &mut Frame<'a>, base: &'a Expr, links: &'a [Postfix]) -> (usize, Wire) {
+        match (&base.kind, self.alias_of(f, base), links.first()) {
+            (ExprKind::Name(alias), Some(module), Some(Postfix::Field(name))) => {
+                (1, self.imported_value(f, alias, module, name))
+            }
+            (ExprKind::Name(alias), Some(module), Some(Postfix::Method(call, span))) => {
+                (1, self.imported_call(f, alias, module, call, *span))
+            }
+            (ExprKind::Name(alias), Some(_), _) => {
+                let place = self.place(f, base.span);
+                (links.len(), self.report(f, names::alias_as_value(place, alias)))
+            }
+            _ => (0, self.expr(f, base)),
+        }
     }
 
     fn alias_of(&self, f: &Frame<'a>, base: &Expr) -> Option<usize> {
@@ -388,6 +408,13 @@ impl<'a> Checker<'a> {
             common.push(self.coerce_value(f, &Wire::Value(value), scalar, width, *place)?);
         }
         Some(common)
+    }
+}
+
+fn end_of(link: &Postfix) -> Span {
+    match link {
+        Postfix::Field(name) => name.span,
+        Postfix::Method(_, span) | Postfix::Index(_, span) => *span,
     }
 }
 

@@ -130,6 +130,7 @@ impl<'a> Checker<'a> {
         let mut names = scope(accumulators);
         names.insert(&fold.variable.text, Wire::Value(f.builder.constant(Constant::ints(&[step]))));
         f.scopes.push(names);
+        f.foreign += 1;
         let mut next = accumulators.to_vec();
         let mut fine = true;
         for statement in order {
@@ -147,6 +148,7 @@ impl<'a> Checker<'a> {
                 }
             }
         }
+        f.foreign -= 1;
         f.scopes.pop();
         fine.then_some(next)
     }

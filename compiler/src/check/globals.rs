@@ -5,6 +5,7 @@ use super::wire::Wire;
 use super::{Checker, Frame, Step, Target, types};
 use crate::diagnostic::{Place, imports, names, rates, types as type_errors};
 use crate::graph::{Builder, Constant, Param, ParamId, Scalar, Type};
+use crate::library::Callable;
 use crate::module::Module;
 use rustc_hash::FxHashMap;
 use texgraph_grammar::syntax::{Expr, Item, ItemKind, Name, Node, Range, Span};
@@ -33,6 +34,17 @@ pub fn node_of(item: &Item) -> Option<&Node> {
         ItemKind::Node(node) | ItemKind::Texture { node, .. } => Some(node),
         _ => None,
     }
+}
+
+/// The nodes and textures of a file by name.
+pub fn callables(index: usize, module: &Module) -> FxHashMap<&str, Vec<Callable>> {
+    let mut named: FxHashMap<&str, Vec<Callable>> = FxHashMap::default();
+    for (item, declared) in module.tree.items.iter().enumerate() {
+        if let Some(node) = node_of(declared) {
+            named.entry(&node.name.text).or_default().push(Callable::Node(index, item));
+        }
+    }
+    named
 }
 
 /// The name that an item declares.

@@ -21,13 +21,13 @@ pub use texture::textures;
 
 use crate::diagnostic::{Diagnostic, Place, limits, names, types as type_errors};
 use crate::graph::{Builder, Function, FunctionId, Graph, Param, ParamId, ResourceView, Type, ViewId};
-use crate::library::Library;
+use crate::library::{Callable, Library};
 use crate::module::Module;
 use crate::resource::{FieldKind, KINDS, Resource};
 use globals::Global;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span, Statement};
+use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Postfix, Span, Statement};
 use types::{Declared, Dims};
 use wire::{ArgumentKey, Key, ResourceWire, Wire};
 
@@ -44,6 +44,8 @@ pub struct Checker<'a> {
     library: &'a Library,
     modules: &'a [Module],
     globals: Vec<FxHashMap<String, Global>>,
+    /// The nodes and textures of each file by name.
+    callables: Vec<FxHashMap<&'a str, Vec<Callable>>>,
     aliases: Vec<String>,
     made: FxHashMap<Key, Outcome>,
     interned: FxHashMap<u64, Vec<FunctionId>>,
@@ -53,6 +55,8 @@ pub struct Checker<'a> {
     resource_wires: Vec<(usize, Vec<ViewId>, Vec<(&'static str, crate::graph::Constant)>)>,
     views: Vec<ResourceView>,
     diagnostics: Vec<Diagnostic>,
+    /// Nodes made or being made.
+    started: usize,
     /// The limit on nodes was reported.
     full: bool,
 }
@@ -89,6 +93,11 @@ pub struct Frame<'a> {
     /// Nodes that the current step waits for, with the calls.
     waiting: Vec<(Key, Place)>,
     failed: bool,
+    /// How far chains of methods in the current step have come, by their first link: a step that
+    /// waited goes on from there.
+    progress: FxHashMap<*const Postfix, (usize, Wire)>,
+    /// Expressions are evaluated for other names than the step's own: a fold's body, a default.
+    foreign: u32,
     /// Index of the frame that waits for this one.
     parent: Option<usize>,
     /// The statement whose value is being made; names made-up resources.
@@ -102,6 +111,7 @@ impl<'a> Checker<'a> {
             library,
             modules,
             globals: vec![FxHashMap::default(); modules.len()],
+            callables: modules.iter().enumerate().map(|(i, module)| globals::callables(i, module)).collect(),
             aliases: globals::aliases(modules, library.modules().len()),
             made: FxHashMap::default(),
             interned: FxHashMap::default(),
@@ -111,6 +121,7 @@ impl<'a> Checker<'a> {
             resource_wires: Vec::new(),
             views: Vec::new(),
             diagnostics: Vec::new(),
+            started: 0,
             full: false,
         }
     }
@@ -192,7 +203,8 @@ impl<'a> Checker<'a> {
             }
             up = frame.parent;
         }
-        if self.made.len() >= limits::MAX_NODES {
+        self.started += 1;
+        if self.started > limits::MAX_NODES {
             if !self.full {
                 self.diagnostics.push(limits::too_many_nodes(place, &node.name.text));
             }
@@ -337,6 +349,7 @@ impl<'a> Checker<'a> {
                 return false;
             }
             f.next += 1;
+            f.progress.clear();
             if f.builder.function().values.len() > limits::MAX_VALUES {
                 let place = self.place(f, value.span);
                 let name = f.builder.function().name.clone();
@@ -479,6 +492,8 @@ impl<'a> Frame<'a> {
             next: 0,
             waiting: Vec::new(),
             failed: false,
+            progress: FxHashMap::default(),
+            foreign: 0,
             parent: None,
             current: String::new(),
         }

@@ -5,7 +5,8 @@
 
 use super::types::Types;
 use super::{Callee, Captures, Lowering, Member};
-use crate::graph::{Function, Operation, ParamId, Type, Value, ViewId};
+use crate::graph::{Constant, Function, Operation, ParamId, Type, Value, ViewId};
+use crate::intrinsic::{MULTIPLY, MULTIPLY_INT};
 use crate::naming::{Scope, camel_case};
 use naga::{BinaryOperator, Expression, Handle, Literal, Span, Statement};
 use rustc_hash::FxHashMap;
@@ -96,8 +97,6 @@ pub struct Frame<'g> {
     pub samplers: FxHashMap<Handle<Expression>, Handle<Expression>>,
     /// Numbers of calls' results with their names.
     pub results: FxHashMap<u32, String>,
-    /// Literals, each once.
-    pub literals: FxHashMap<crate::graph::Constant, Handle<Expression>>,
 }
 
 impl Lowering<'_> {
@@ -235,6 +234,54 @@ impl Lowering<'_> {
     }
 }
 
+/// How often each value is written. A factor that is a scalar in every component is written as
+/// that scalar.
+fn uses(function: &Function) -> Vec<u32> {
+    let mut uses = vec![0; function.values.len()];
+    for (_, value) in &function.outputs {
+        uses[value.0 as usize] += 1;
+    }
+    for (value, operation) in function.iter().rev() {
+        if uses[value.0 as usize] == 0 {
+            continue;
+        }
+        let factors = match operation {
+            Operation::Builtin(MULTIPLY | MULTIPLY_INT, factors) => factors.as_slice(),
+            _ => &[],
+        };
+        let scalars: Vec<Option<Splat>> = factors.iter().map(|v| splat_of(function, *v)).collect();
+        match scalars.as_slice() {
+            [Some(Splat::Value(scalar)), None] | [None, Some(Splat::Value(scalar))] => {
+                let vector = if scalars[0].is_none() { factors[0] } else { factors[1] };
+                uses[scalar.0 as usize] += 1;
+                uses[vector.0 as usize] += 1;
+            }
+            _ => operation.for_operands(|v| uses[v.0 as usize] += 1),
+        }
+    }
+    uses
+}
+
+/// A scalar that stands in every component of a vector.
+#[derive(Clone, Copy)]
+pub enum Splat {
+    /// A value.
+    Value(Value),
+    /// A known number.
+    Constant(Constant),
+}
+
+/// The scalar of a vector that has one in every component.
+pub fn splat_of(function: &Function, vector: Value) -> Option<Splat> {
+    match function.operation(vector) {
+        Operation::Constant(c) if c.width() > 1 && c.bits().iter().all(|bits| *bits == c.bits()[0]) => {
+            Some(Splat::Constant(c.component(0)))
+        }
+        Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => Some(Splat::Value(parts[0])),
+        _ => None,
+    }
+}
+
 /// Whether a view comes with a sampler.
 pub fn has_sampler(ty: Type) -> bool {
     matches!(ty, Type::View(view) if view.texel == crate::graph::Texel::Sampled)
@@ -255,24 +302,16 @@ fn hint(operation: &Operation) -> &str {
 
 impl<'g> Frame<'g> {
     fn new(function: &'g Function, scope: Scope) -> Frame<'g> {
-        let mut uses = vec![0; function.values.len()];
-        for (_, operation) in function.iter() {
-            operation.for_operands(|v| uses[v.0 as usize] += 1);
-        }
-        for (_, value) in &function.outputs {
-            uses[value.0 as usize] += 1;
-        }
         Frame {
             function,
             values: vec![None; function.values.len()],
             nest: vec![0; function.values.len()],
-            uses,
+            uses: uses(function),
             scope,
             params: FxHashMap::default(),
             views: FxHashMap::default(),
             samplers: FxHashMap::default(),
             results: FxHashMap::default(),
-            literals: FxHashMap::default(),
         }
     }
 

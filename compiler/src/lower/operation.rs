@@ -1,10 +1,10 @@
 //! One operation as one expression (or a few).
 
 use super::Lowering;
-use super::function::{Body, Frame, has_sampler};
+use super::function::{Body, Frame, Splat, has_sampler, splat_of};
 use super::types::{numeric, scalar, size};
 use crate::graph::{Axis, Constant, Level, Operation, Scalar, Type, Value};
-use crate::intrinsic::{Form, Intrinsic};
+use crate::intrinsic::{Form, Intrinsic, MULTIPLY, MULTIPLY_INT};
 use naga::{BinaryOperator, Expression, Handle, Literal, MathFunction, ScalarKind, SwizzleComponent};
 
 impl Lowering<'_> {
@@ -16,18 +16,18 @@ impl Lowering<'_> {
         operation: &Operation,
     ) -> Handle<Expression> {
         match operation {
-            Operation::Constant(constant) => self.constant(body, frame, constant),
+            Operation::Constant(constant) => self.constant(body, constant),
             Operation::Input(_) => frame.get(value),
             Operation::Param(id) => frame.params[id],
             Operation::View(id) => frame.views[id],
             Operation::Builtin(intrinsic, arguments) => self.builtin(body, frame, *intrinsic, arguments),
             Operation::Compose(parts) => self.compose(body, frame, value, parts),
             Operation::Extract(vector, i) => {
-                let base = frame.get(*vector);
+                let base = self.operand(body, frame, *vector);
                 body.add(Expression::AccessIndex { base, index: u32::from(*i) })
             }
             Operation::Select(condition, yes, no) => {
-                let (condition, accept, reject) = (frame.get(*condition), frame.get(*yes), frame.get(*no));
+                let (condition, accept, reject) = (frame.get(*condition), self.operand(body, frame, *yes), self.operand(body, frame, *no));
                 body.add(Expression::Select { condition, accept, reject })
             }
             Operation::Sample { view, coordinate, layer, level } => {
@@ -35,9 +35,10 @@ impl Lowering<'_> {
             }
             Operation::Texel { view, index, layer } => {
                 let level = body.literal(Literal::I32(0));
+                let coordinate = self.operand(body, frame, *index);
                 body.add(Expression::ImageLoad {
                     image: frame.get(*view),
-                    coordinate: frame.get(*index),
+                    coordinate,
                     array_index: layer.map(|v| frame.get(v)),
                     sample: None,
                     level: Some(level),
@@ -61,15 +62,22 @@ impl Lowering<'_> {
                     Axis::Y => naga::DerivativeAxis::Y,
                 };
                 let ctrl = naga::DerivativeControl::None;
-                body.add(Expression::Derivative { axis, ctrl, expr: frame.get(*v) })
+                let expr = frame.get(*v);
+                body.add(Expression::Derivative { axis, ctrl, expr })
             }
         }
     }
 
-    fn constant(&mut self, body: &mut Body, frame: &mut Frame, constant: &Constant) -> Handle<Expression> {
-        if let Some(handle) = frame.literals.get(constant) {
-            return *handle;
+    /// A lowered operand. A constant vector is written out at each use: the writer would give one
+    /// that is used twice a name of its own.
+    fn operand(&mut self, body: &mut Body, frame: &Frame, value: Value) -> Handle<Expression> {
+        match frame.function.operation(value) {
+            Operation::Constant(constant) if constant.width() > 1 => self.constant(body, constant),
+            _ => frame.get(value),
         }
+    }
+
+    fn constant(&mut self, body: &mut Body, constant: &Constant) -> Handle<Expression> {
         let width = constant.width();
         let same = constant.bits().iter().all(|bits| *bits == constant.bits()[0]);
         let literal = |i: usize| match constant.scalar() {
@@ -87,12 +95,11 @@ impl Lowering<'_> {
             let ty = self.types.get(&mut self.module.types, constant.ty());
             body.add(Expression::Compose { ty, components })
         };
-        frame.literals.insert(*constant, handle);
         handle
     }
 
     /// Runs of components of one vector are written as a swizzle.
-    fn compose(&mut self, body: &mut Body, frame: &mut Frame, value: Value, parts: &[Value]) -> Handle<Expression> {
+    fn compose(&mut self, body: &mut Body, frame: &Frame, value: Value, parts: &[Value]) -> Handle<Expression> {
         let width = parts.len() as u8;
         if parts.iter().all(|part| part == &parts[0]) {
             let value = frame.get(parts[0]);
@@ -126,7 +133,7 @@ impl Lowering<'_> {
     }
 
     fn swizzle(&mut self, body: &mut Body, frame: &Frame, vector: Value, run: &[u8]) -> Handle<Expression> {
-        let base = frame.get(vector);
+        let base = self.operand(body, frame, vector);
         if usize::from(frame.function.ty(vector).width()) == run.len() && run.iter().enumerate().all(|(i, c)| i == usize::from(*c)) {
             return base;
         }
@@ -147,8 +154,12 @@ impl Lowering<'_> {
         level: &Level,
     ) -> Handle<Expression> {
         let image = frame.get(view);
+        let coordinate = self.operand(body, frame, coordinate);
         let level = match level {
-            Level::Gradient(x, y) => naga::SampleLevel::Gradient { x: frame.get(*x), y: frame.get(*y) },
+            Level::Gradient(x, y) => {
+                let (x, y) = (self.operand(body, frame, *x), self.operand(body, frame, *y));
+                naga::SampleLevel::Gradient { x, y }
+            }
             Level::Level(l) => naga::SampleLevel::Exact(frame.get(*l)),
             Level::Auto => naga::SampleLevel::Zero,
         };
@@ -156,7 +167,7 @@ impl Lowering<'_> {
             image,
             sampler: frame.samplers.get(&image).copied().unwrap_or(image),
             gather: None,
-            coordinate: frame.get(coordinate),
+            coordinate,
             array_index: layer.map(|v| frame.get(v)),
             offset: None,
             level,
@@ -173,6 +184,7 @@ impl Lowering<'_> {
         callee: usize,
         arguments: &[Value],
     ) -> Handle<Expression> {
+        let operands: Vec<Handle<Expression>> = arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
         let callee = &self.functions[callee];
         let mut all = Vec::new();
         let mut push = |handle: Handle<Expression>, ty: Type| {
@@ -181,7 +193,7 @@ impl Lowering<'_> {
                 all.extend(frame.samplers.get(&handle));
             }
         };
-        arguments.iter().for_each(|v| push(frame.get(*v), frame.function.ty(*v)));
+        operands.into_iter().zip(arguments).for_each(|(handle, v)| push(handle, frame.function.ty(*v)));
         for id in &callee.captures.params {
             push(frame.params[id], Type::FLOAT);
         }
@@ -202,9 +214,16 @@ impl Lowering<'_> {
     }
 
     fn builtin(&mut self, body: &mut Body, frame: &mut Frame, intrinsic: Intrinsic, arguments: &[Value]) -> Handle<Expression> {
-        let operands: Vec<Handle<Expression>> = arguments.iter().map(|v| frame.get(*v)).collect();
+        if let [a, b] = arguments
+            && matches!(intrinsic, MULTIPLY | MULTIPLY_INT)
+            && let Some(product) = self.scaled(body, frame, *a, *b).or_else(|| self.scaled(body, frame, *b, *a))
+        {
+            return product;
+        }
+        let operands: Vec<Handle<Expression>> = arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
         let ty = arguments.first().map_or(Type::FLOAT, |v| frame.function.ty(*v));
         match intrinsic.row().form {
+            Form::Operator(symbol @ ("<<" | ">>")) => self.shift(body, frame, symbol, &operands, arguments),
             Form::Operator(symbol) => self.operator(body, symbol, ty, &operands),
             Form::Function(name) => body.add(Expression::Math {
                 fun: math(name),
@@ -257,16 +276,37 @@ impl Lowering<'_> {
             "|" if single => BinaryOperator::LogicalOr,
             "&" => BinaryOperator::And,
             "|" => BinaryOperator::InclusiveOr,
-            "^" => BinaryOperator::ExclusiveOr,
-            "<<" => BinaryOperator::ShiftLeft,
-            _ => BinaryOperator::ShiftRight,
+            _ => BinaryOperator::ExclusiveOr,
         };
-        let right = match op {
-            // Shift counts are unsigned in the shader language.
-            BinaryOperator::ShiftLeft | BinaryOperator::ShiftRight => body.convert(operands[1], ScalarKind::Uint),
-            _ => operands[1],
+        body.binary(op, operands[0], operands[1])
+    }
+
+    /// A vector times a scalar, where the other factor is a scalar in every component.
+    fn scaled(&mut self, body: &mut Body, frame: &Frame, vector: Value, factor: Value) -> Option<Handle<Expression>> {
+        let scalar = match (splat_of(frame.function, vector), splat_of(frame.function, factor)?) {
+            (Some(_), _) => return None,
+            (None, Splat::Value(scalar)) => frame.get(scalar),
+            (None, Splat::Constant(constant)) => self.constant(body, &constant),
         };
-        body.binary(op, operands[0], right)
+        let vector = self.operand(body, frame, vector);
+        Some(body.binary(BinaryOperator::Multiply, vector, scalar))
+    }
+
+    /// Shift counts are unsigned in the shader language.
+    fn shift(
+        &mut self,
+        body: &mut Body,
+        frame: &Frame,
+        symbol: &str,
+        operands: &[Handle<Expression>],
+        arguments: &[Value],
+    ) -> Handle<Expression> {
+        let op = if symbol == "<<" { BinaryOperator::ShiftLeft } else { BinaryOperator::ShiftRight };
+        let count = match frame.function.operation(arguments[1]) {
+            Operation::Constant(c) if c.width() == 1 => body.literal(Literal::U32(c.int(0) as u32)),
+            _ => body.convert(operands[1], ScalarKind::Uint),
+        };
+        body.binary(op, operands[0], count)
     }
 
     /// A float as a colour of four: what the complete form writes.

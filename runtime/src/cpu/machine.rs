@@ -80,7 +80,8 @@ impl<'a> Machine<'a> {
     fn leave(&mut self, planned: &Planned) {
         let Some(frame) = self.frames.pop() else { return };
         let (callers, own) = self.values.split_at_mut(frame.base);
-        let output = |n: usize| planned.outputs.get(n).copied().flatten().map_or(zero(), |at| read(planned, own, at));
+        let output =
+            |n: usize| planned.outputs.get(n).copied().flatten().map_or(zero(), |at| read(planned, own, at));
         match self.frames.last() {
             None => self.outputs.extend((0..planned.outputs.len()).map(output)),
             Some(caller) => {
@@ -95,7 +96,12 @@ impl<'a> Machine<'a> {
 
     fn step(&mut self, planned: &Planned, base: usize, step: &Step) {
         let frame = &self.values[base..];
-        let value = evaluate(&step.operation, |value| read(planned, frame, value), self.textures, &mut self.arguments);
+        let value = evaluate(
+            &step.operation,
+            |value| read(planned, frame, value),
+            self.textures,
+            &mut self.arguments,
+        );
         self.values[base + step.target.0 as usize - planned.known.len()] = value;
     }
 }
@@ -148,7 +154,9 @@ pub fn evaluate(
             let index = IVec2::new(index.int(0), index.int(1));
             texture(*view).map_or(Constant::zero(Scalar::Float, 4), |texture| texture.fetch(index, layer(l)))
         }
-        Operation::Size(view) => Constant::ints(&texture(*view).map_or([1, 1], |texture| texture.size().to_array())),
+        Operation::Size(view) => {
+            Constant::ints(&texture(*view).map_or([1, 1], |texture| texture.size().to_array()))
+        }
         // The plan makes registers of these, and runs calls itself.
         Operation::Input(_)
         | Operation::Param(_)

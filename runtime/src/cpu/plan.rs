@@ -107,7 +107,8 @@ fn bound(operations: u64) -> Result<(), RenderError> {
 /// Which values of each function the output needs.
 fn demand(graph: &Graph, output: usize) -> Vec<Vec<bool>> {
     let functions = &graph.functions;
-    let mut live: Vec<Vec<bool>> = functions.iter().map(|function| vec![false; function.values.len()]).collect();
+    let mut live: Vec<Vec<bool>> =
+        functions.iter().map(|function| vec![false; function.values.len()]).collect();
     if let Some((_, value)) = functions.last().and_then(|entry| entry.outputs.get(output)) {
         live[functions.len() - 1][value.0 as usize] = true;
     }
@@ -156,7 +157,12 @@ struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    fn new(program: &'a Program, request: &'a Request, function: &'a Function, live: &'a [bool]) -> Planner<'a> {
+    fn new(
+        program: &'a Program,
+        request: &'a Request,
+        function: &'a Function,
+        live: &'a [bool],
+    ) -> Planner<'a> {
         let states = vec![State::Unknown; function.values.len()];
         Planner { program, request, function, live, states, inputs: Vec::new(), planned: Planned::default() }
     }
@@ -236,7 +242,9 @@ impl<'a> Planner<'a> {
     /// Whether all operands are known.
     fn can_be_known(&self, operation: &Operation) -> bool {
         let mut known = !matches!(operation, Operation::Input(_) | Operation::Derivative(..));
-        operation.for_operands(|operand| known &= matches!(self.state(operand), State::Known(_) | State::KnownCall(_)));
+        operation.for_operands(|operand| {
+            known &= matches!(self.state(operand), State::Known(_) | State::KnownCall(_))
+        });
         known
     }
 
@@ -290,7 +298,8 @@ impl<'a> Planner<'a> {
             self.planned.steps.push(Step { operation: moved, target, results: Vec::new() });
         }
         let outputs = self.function.outputs.iter();
-        let wanted = outputs.map(|(_, value)| self.live[value.0 as usize].then(|| self.register(&known, *value)));
+        let wanted =
+            outputs.map(|(_, value)| self.live[value.0 as usize].then(|| self.register(&known, *value)));
         self.planned.outputs = wanted.collect();
     }
 
@@ -328,7 +337,9 @@ impl<'a> Planner<'a> {
 /// The work of one operation, that of its callee included.
 fn cost(operation: &Operation, callees: &[Planned]) -> u64 {
     match operation {
-        Operation::Call(id, _) => callees.get(id.0 as usize).map_or(1, |callee| callee.cost.saturating_add(1)),
+        Operation::Call(id, _) => {
+            callees.get(id.0 as usize).map_or(1, |callee| callee.cost.saturating_add(1))
+        }
         _ => 1,
     }
 }

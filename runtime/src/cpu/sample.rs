@@ -24,7 +24,9 @@ impl Texture {
         let lod = lod.max(0.0).min(last as f32);
         let layer = layer.clamp(0, self.levels[0].layers - 1);
         match self.filter {
-            Filter::Nearest => self.nearest(&self.levels[((lod + 0.5).ceil() as usize).max(1) - 1], at, layer),
+            Filter::Nearest => {
+                self.nearest(&self.levels[((lod + 0.5).ceil() as usize).max(1) - 1], at, layer)
+            }
             Filter::Linear => {
                 let (upper, share) = (lod.floor() as usize, lod.fract());
                 let sharp = self.bilinear(&self.levels[upper], at, layer);

@@ -55,8 +55,12 @@ impl Texture {
         let level = &self.levels[0];
         let index = level.index(at.clamp(IVec2::ZERO, level.size - 1), layer.clamp(0, level.layers - 1));
         match &self.texels {
-            Texels::Float(texels) => Constant::floats(&texels.get(index).copied().unwrap_or(Vec4::ZERO).to_array()),
-            Texels::Int(texels) => Constant::ints(&texels.get(index).copied().unwrap_or(IVec4::ZERO).to_array()),
+            Texels::Float(texels) => {
+                Constant::floats(&texels.get(index).copied().unwrap_or(Vec4::ZERO).to_array())
+            }
+            Texels::Int(texels) => {
+                Constant::ints(&texels.get(index).copied().unwrap_or(IVec4::ZERO).to_array())
+            }
         }
     }
 }
@@ -120,9 +124,15 @@ fn texels(format: Format, bytes: &[u8]) -> Texels {
     let snorm = |byte: u8| (f32::from(byte as i8) / 127.0).max(-1.0);
     let half = |pair: &[u8]| f16::from_le_bytes([pair[0], pair[1]]).to_f32();
     match format {
-        Format::Rgba8UnormSrgb => floats(bytes, 4, |t| Vec4::new(srgb(t[0]), srgb(t[1]), srgb(t[2]), unorm(t[3]))),
-        Format::Rgba8Unorm => floats(bytes, 4, |t| Vec4::new(unorm(t[0]), unorm(t[1]), unorm(t[2]), unorm(t[3]))),
-        Format::Rgba8Snorm => floats(bytes, 4, |t| Vec4::new(snorm(t[0]), snorm(t[1]), snorm(t[2]), snorm(t[3]))),
+        Format::Rgba8UnormSrgb => {
+            floats(bytes, 4, |t| Vec4::new(srgb(t[0]), srgb(t[1]), srgb(t[2]), unorm(t[3])))
+        }
+        Format::Rgba8Unorm => {
+            floats(bytes, 4, |t| Vec4::new(unorm(t[0]), unorm(t[1]), unorm(t[2]), unorm(t[3])))
+        }
+        Format::Rgba8Snorm => {
+            floats(bytes, 4, |t| Vec4::new(snorm(t[0]), snorm(t[1]), snorm(t[2]), snorm(t[3])))
+        }
         Format::Rgba16Float => {
             floats(bytes, 8, |t| Vec4::new(half(&t[0..2]), half(&t[2..4]), half(&t[4..6]), half(&t[6..8])))
         }

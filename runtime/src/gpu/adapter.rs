@@ -1,6 +1,7 @@
 //! Finds and opens an adapter.
 
 use super::Preference;
+use super::pipeline::TARGET;
 use crate::render::RenderError;
 use wgpu::{Adapter, AdapterInfo, Backend, Device, DeviceType, Queue};
 
@@ -36,9 +37,15 @@ fn rank(info: &AdapterInfo) -> (bool, u8) {
     (info.backend == Backend::Gl, kind)
 }
 
-/// A device with exactly WebGPU's default limits, so that what runs here runs everywhere.
+/// A device with exactly WebGPU's default limits, so that what runs here runs everywhere. Some
+/// OpenGL drivers claim these but can't draw floats.
 fn device(adapter: &Adapter) -> Result<(Device, Queue), String> {
-    let descriptor = wgpu::DeviceDescriptor { label: Some("texgraph"), ..wgpu::DeviceDescriptor::default() };
+    let usages = adapter.get_texture_format_features(TARGET).allowed_usages;
+    if !usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
+        return Err("it does not render to 32-bit floats".to_string());
+    }
+    let descriptor =
+        wgpu::DeviceDescriptor { label: Some("texgraph"), ..wgpu::DeviceDescriptor::default() };
     pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())
 }
 

@@ -82,8 +82,9 @@ fn bind_texture(gpu: &Gpu, slots: &mut Slots, texture: &Texture, view: wgpu::Tex
 
 fn make_group(gpu: &Gpu, slots: &BTreeMap<u32, Bound>) -> (wgpu::BindGroupLayout, wgpu::BindGroup) {
     let entries: Vec<_> = slots.iter().map(|(binding, bound)| layout_entry(*binding, bound)).collect();
-    let layout =
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries });
     let entries: Vec<_> = slots
         .iter()
         .map(|(binding, bound)| wgpu::BindGroupEntry { binding: *binding, resource: bound.resource() })

@@ -50,7 +50,11 @@ pub fn build(
         attributes: &attributes,
     };
     let mut targets = vec![None; location as usize];
-    targets.push(Some(wgpu::ColorTargetState { format: TARGET, blend: None, write_mask: wgpu::ColorWrites::ALL }));
+    targets.push(Some(wgpu::ColorTargetState {
+        format: TARGET,
+        blend: None,
+        write_mask: wgpu::ColorWrites::ALL,
+    }));
     Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(&pass.name),
         layout: Some(&layout),
@@ -108,7 +112,11 @@ fn attributes(manifest: &Manifest) -> (Vec<wgpu::VertexAttribute>, u64) {
     let mut attributes = vec![clip];
     let mut offset = CLIP_BYTES;
     for (n, (input, _)) in (1..).zip(varyings(manifest)) {
-        attributes.push(wgpu::VertexAttribute { format: vertex_format(input.ty), offset, shader_location: n });
+        attributes.push(wgpu::VertexAttribute {
+            format: vertex_format(input.ty),
+            offset,
+            shader_location: n,
+        });
         offset += u64::from(input.ty.width) * 4;
     }
     (attributes, offset)

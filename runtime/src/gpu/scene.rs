@@ -54,7 +54,8 @@ impl<'a> Scene<'a> {
         output: usize,
     ) -> Result<Scene<'a>, RenderError> {
         let outputs = &program.manifest.outputs;
-        let location = outputs.get(output).ok_or(RenderError::NoOutput { output, outputs: outputs.len() })?.location;
+        let location =
+            outputs.get(output).ok_or(RenderError::NoOutput { output, outputs: outputs.len() })?.location;
         if location >= gpu.device.limits().max_color_attachments {
             return Err(RenderError::Gpu(format!("there is no attachment number {location}")));
         }
@@ -93,10 +94,16 @@ impl<'a> Scene<'a> {
     fn canvas(&self, size: [u32; 2]) -> Canvas {
         let device = &self.gpu.device;
         let buffer = |size: u64, usage| {
-            device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+            device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
         };
         let whole = Tile { first: [0, 0], size };
-        let corners = pipeline::corners(&self.program.manifest, &Request::new(size), [0, 0], size).len() as u64;
+        let corners =
+            pipeline::corners(&self.program.manifest, &Request::new(size), [0, 0], size).len() as u64;
         Canvas {
             corners: buffer(corners, wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST),
             target: device.create_texture(&wgpu::TextureDescriptor {
@@ -138,7 +145,13 @@ impl<'a> Scene<'a> {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    fn pass(&self, encoder: &mut wgpu::CommandEncoder, view: &wgpu::TextureView, canvas: &Canvas, tile: Tile) {
+    fn pass(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &wgpu::TextureView,
+        canvas: &Canvas,
+        tile: Tile,
+    ) {
         let mut attachments = vec![None; self.location as usize];
         attachments.push(Some(wgpu::RenderPassColorAttachment {
             view,
@@ -193,7 +206,8 @@ fn extent(size: [u32; 2]) -> wgpu::Extent3d {
 /// The parts of a picture, row by row.
 fn tiles(size: [u32; 2]) -> Vec<Tile> {
     let starts = |side: u32| (0..side).step_by(TILE as usize);
-    let tile = |x: u32, y: u32| Tile { first: [x, y], size: [(size[0] - x).min(TILE), (size[1] - y).min(TILE)] };
+    let tile =
+        |x: u32, y: u32| Tile { first: [x, y], size: [(size[0] - x).min(TILE), (size[1] - y).min(TILE)] };
     starts(size[1]).flat_map(|y| starts(size[0]).map(move |x| tile(x, y))).collect()
 }
 

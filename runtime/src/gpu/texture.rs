@@ -13,8 +13,7 @@ pub fn upload(
     resource: &Resource,
     texture: &Texture,
 ) -> Result<wgpu::TextureView, RenderError> {
-    let missing =
-        || RenderError::NoTable { resource: resource.name.clone(), field: texture.field.clone() };
+    let missing = || RenderError::NoTable { resource: resource.name.clone(), field: texture.field.clone() };
     let table = texture.table.as_ref().ok_or_else(missing)?;
     let bytes = tables.get(index, &texture.field).ok_or_else(missing)?;
     let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
@@ -93,7 +92,9 @@ pub fn sampler(gpu: &Gpu, sampler: &Sampler) -> wgpu::Sampler {
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
     };
     let (filter, between, anisotropy) = match sampler.filter {
-        Filter::Linear => (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear, sampler.anisotropy.clamp(1, 16)),
+        Filter::Linear => {
+            (wgpu::FilterMode::Linear, wgpu::MipmapFilterMode::Linear, sampler.anisotropy.clamp(1, 16))
+        }
         Filter::Nearest => (wgpu::FilterMode::Nearest, wgpu::MipmapFilterMode::Nearest, 1),
     };
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {

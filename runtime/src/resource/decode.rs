@@ -36,11 +36,7 @@ impl Decoded {
 
     /// The greatest sample: 255 or 65535.
     pub fn white(&self) -> u16 {
-        if self.is_deep() {
-            u16::MAX
-        } else {
-            u16::from(u8::MAX)
-        }
+        if self.is_deep() { u16::MAX } else { u16::from(u8::MAX) }
     }
 
     /// Red, green, blue and alpha as stored. Grey gives (v, v, v); without alpha it is white.
@@ -64,9 +60,7 @@ impl Decoded {
 /// # Errors
 /// The file can't be read, is no whole picture, or is too large.
 pub fn open(project: &Project, path: &str, place: Place) -> Result<Decoded, Vec<Diagnostic>> {
-    let bytes = project
-        .read(path)
-        .map_err(|error| vec![unread(place, path, error.problem)])?;
+    let bytes = project.read(path).map_err(|error| vec![unread(place, path, error.problem)])?;
     decode(&bytes, path, place)
 }
 
@@ -90,60 +84,34 @@ fn decode(bytes: &[u8], path: &str, place: Place) -> Result<Decoded, Vec<Diagnos
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(limits(None));
-    let mut decoder = reader
-        .into_decoder()
-        .map_err(|error| refuse(&error.to_string()))?;
+    let mut decoder = reader.into_decoder().map_err(|error| refuse(&error.to_string()))?;
     let (width, height) = decoder.dimensions();
-    let too_large = || {
-        vec![resources::picture_too_large(
-            place,
-            path,
-            [width, height],
-            MAX_SIDE,
-        )]
-    };
+    let too_large = || vec![resources::picture_too_large(place, path, [width, height], MAX_SIDE)];
     if width > MAX_SIDE || height > MAX_SIDE || decoder.total_bytes() > MAX_BYTES {
         return Err(too_large());
     }
     if width == 0 || height == 0 {
         return Err(refuse("it has no texels"));
     }
-    decoder
-        .set_limits(limits(Some(MAX_SIDE)))
-        .map_err(|_| too_large())?;
-    let (channels, deep) = layout(decoder.color_type())
-        .ok_or_else(|| refuse("its samples have neither 8 nor 16 bits"))?;
+    decoder.set_limits(limits(Some(MAX_SIDE))).map_err(|_| too_large())?;
+    let (channels, deep) =
+        layout(decoder.color_type()).ok_or_else(|| refuse("its samples have neither 8 nor 16 bits"))?;
     let mut buffer = vec![0; decoder.total_bytes() as usize];
-    decoder
-        .read_image(&mut buffer)
-        .map_err(|error| refuse(&error.to_string()))?;
-    Ok(Decoded {
-        size: [width, height],
-        channels,
-        samples: samples(buffer, deep),
-    })
+    decoder.read_image(&mut buffer).map_err(|error| refuse(&error.to_string()))?;
+    Ok(Decoded { size: [width, height], channels, samples: samples(buffer, deep) })
 }
 
 /// By the first bytes; a TGA has no mark, so by its name.
 fn format(bytes: &[u8], path: &str) -> Option<ImageFormat> {
     let known = [ImageFormat::Png, ImageFormat::Jpeg];
-    let by_content = image::guess_format(bytes)
-        .ok()
-        .filter(|format| known.contains(format));
-    let by_name = || {
-        ImageFormat::from_path(path)
-            .ok()
-            .filter(|format| *format == ImageFormat::Tga)
-    };
+    let by_content = image::guess_format(bytes).ok().filter(|format| known.contains(format));
+    let by_name = || ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga);
     by_content.or_else(by_name)
 }
 
 /// Whether an end mark follows the last scan: the decoder fills what is missing with grey.
 fn is_whole_jpeg(bytes: &[u8]) -> bool {
-    let scan = bytes
-        .windows(2)
-        .rposition(|pair| pair == [0xff, 0xda])
-        .unwrap_or(0);
+    let scan = bytes.windows(2).rposition(|pair| pair == [0xff, 0xda]).unwrap_or(0);
     bytes[scan..].windows(2).any(|pair| pair == [0xff, 0xd9])
 }
 
@@ -175,9 +143,5 @@ fn samples(buffer: Vec<u8>, deep: bool) -> Samples {
         return Samples::Eight(buffer);
     }
     let pairs = buffer.chunks_exact(2);
-    Samples::Sixteen(
-        pairs
-            .map(|pair| u16::from_ne_bytes([pair[0], pair[1]]))
-            .collect(),
-    )
+    Samples::Sixteen(pairs.map(|pair| u16::from_ne_bytes([pair[0], pair[1]])).collect())
 }

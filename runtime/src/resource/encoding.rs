@@ -10,11 +10,7 @@ use texgraph_compiler::manifest::{Encoding, Format};
 
 /// Light of an sRGB-encoded number, both 0..1 (IEC 61966-2-1).
 pub fn srgb_to_linear(encoded: f64) -> f64 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        libm::pow((encoded + 0.055) / 1.055, 2.4)
-    }
+    if encoded <= 0.04045 { encoded / 12.92 } else { libm::pow((encoded + 0.055) / 1.055, 2.4) }
 }
 
 /// The format in which pictures of this encoding are stored.
@@ -45,11 +41,7 @@ impl<'a> Reader<'a> {
             Encoding::Normal => 2.0 * sample - 1.0,
         };
         let curve = (0..=picture.white()).map(|code| meaning(f64::from(code) / white) as f32);
-        Reader {
-            picture,
-            encoding,
-            curve: curve.collect(),
-        }
+        Reader { picture, encoding, curve: curve.collect() }
     }
 
     /// A texel: linear premultiplied light, data as it is, or a normal with alpha 1.
@@ -75,10 +67,7 @@ pub struct Writer {
 impl Writer {
     /// Prepares to write a format.
     pub fn new(format: Format) -> Writer {
-        Writer {
-            format,
-            srgb: SrgbEncoder::new(),
-        }
+        Writer { format, srgb: SrgbEncoder::new() }
     }
 
     /// The format that is written.
@@ -123,8 +112,7 @@ pub struct SrgbEncoder {
 impl SrgbEncoder {
     /// Makes the tables.
     pub fn new() -> SrgbEncoder {
-        let thresholds =
-            (0..255).map(|code| srgb_to_linear((f64::from(code) + 0.5) / 255.0) as f32);
+        let thresholds = (0..255).map(|code| srgb_to_linear((f64::from(code) + 0.5) / 255.0) as f32);
         let thresholds: Vec<f32> = thresholds.collect();
         let below = |light: f32| thresholds.partition_point(|threshold| *threshold <= light) as u8;
         let starts = (0..=4096).map(|k| below(k as f32 / 4096.0)).collect();
@@ -135,11 +123,7 @@ impl SrgbEncoder {
     pub fn encode(&self, light: f32) -> u8 {
         let bucket = (light * 4096.0).clamp(0.0, 4096.0) as usize;
         let mut code = self.starts[bucket];
-        while self
-            .thresholds
-            .get(usize::from(code))
-            .is_some_and(|threshold| *threshold <= light)
-        {
+        while self.thresholds.get(usize::from(code)).is_some_and(|threshold| *threshold <= light) {
             code += 1;
         }
         code
@@ -160,10 +144,7 @@ mod tests {
     fn every_code_survives_a_round_trip() {
         let encoder = SrgbEncoder::new();
         for code in 0..=255u8 {
-            assert_eq!(
-                encoder.encode(srgb_to_linear(f64::from(code) / 255.0) as f32),
-                code
-            );
+            assert_eq!(encoder.encode(srgb_to_linear(f64::from(code) / 255.0) as f32), code);
         }
     }
 

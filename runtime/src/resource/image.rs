@@ -21,11 +21,5 @@ pub fn make(
     let format = encoding::format(encoding, picture.is_deep());
     table::check(place, path, format, picture.size, 1)?;
     let reader = Reader::new(&picture, encoding);
-    Ok(vec![pyramid::build(
-        "pixels",
-        format,
-        picture.size,
-        1,
-        |_, x, y| reader.texel(x, y),
-    )])
+    Ok(vec![pyramid::build("pixels", format, picture.size, 1, |_, x, y| reader.texel(x, y))])
 }

@@ -27,18 +27,11 @@ pub fn make(
     Ok(vec![made])
 }
 
-fn of_picture(
-    project: &Project,
-    place: Place,
-    path: &str,
-    levels: u32,
-) -> Result<Made, Vec<Diagnostic>> {
+fn of_picture(project: &Project, place: Place, path: &str, levels: u32) -> Result<Made, Vec<Diagnostic>> {
     let picture = decode::open(project, path, place)?;
     let size = picture.size;
     if size.iter().any(|side| *side > MAX_SIDE) {
-        return Err(vec![resources::texture_too_large(
-            place, path, size, MAX_SIDE,
-        )]);
+        return Err(vec![resources::texture_too_large(place, path, size, MAX_SIDE)]);
     }
     let codes = u64::from(picture.white()) + 1;
     let mut numbers = Vec::with_capacity(size[0] as usize * size[1] as usize);
@@ -51,51 +44,30 @@ fn of_picture(
             numbers.push((u64::from(red) * u64::from(levels) / codes) as i32);
         }
     }
-    Ok(Made::integers(
-        "map",
-        Format::R32Sint,
-        size,
-        numbers.into_iter(),
-    ))
+    Ok(Made::integers("map", Format::R32Sint, size, numbers.into_iter()))
 }
 
 fn of_rows(place: Place, rows: &[Vec<i32>], levels: u32) -> Result<Made, Vec<Diagnostic>> {
     let width = rows.first().map_or(0, Vec::len);
-    let refuse =
-        |message: String, reason: String| Err(vec![resources::no_table(place, message, reason)]);
+    let refuse = |message: String, reason: String| Err(vec![resources::no_table(place, message, reason)]);
     if width == 0 {
-        return refuse(
-            "the map has no numbers".into(),
-            "at least one is needed".into(),
-        );
+        return refuse("the map has no numbers".into(), "at least one is needed".into());
     }
     if width.max(rows.len()) > MAX_SIDE as usize {
         let size = [width, rows.len()].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-        return Err(vec![resources::texture_too_large(
-            place,
-            "this list",
-            size,
-            MAX_SIDE,
-        )]);
+        return Err(vec![resources::texture_too_large(place, "this list", size, MAX_SIDE)]);
     }
     for (y, row) in rows.iter().enumerate() {
         if row.len() != width {
             let message = format!("row {y} has {} numbers, row 0 has {width}", row.len());
             return refuse(message, "all rows have one length".into());
         }
-        if let Some(number) = row
-            .iter()
-            .find(|number| u32::try_from(**number).map_or(true, |n| n >= levels))
+        if let Some(number) = row.iter().find(|number| u32::try_from(**number).map_or(true, |n| n >= levels))
         {
             let message = format!("row {y} holds {number}, which is not in 0..{levels}");
             return refuse(message, "numbers are below `levels`".into());
         }
     }
     let size = [width as u32, rows.len() as u32];
-    Ok(Made::integers(
-        "map",
-        Format::R32Sint,
-        size,
-        rows.iter().flatten().copied(),
-    ))
+    Ok(Made::integers("map", Format::R32Sint, size, rows.iter().flatten().copied()))
 }

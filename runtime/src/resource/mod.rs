@@ -40,29 +40,19 @@ impl Tables {
     /// The bytes of a field of a resource (an index into the manifest's `resources`), laid out as
     /// the texture's `table` says.
     pub fn get(&self, resource: usize, field: &str) -> Option<&Arc<[u8]>> {
-        let found = self
-            .entries
-            .iter()
-            .find(|entry| entry.resource == resource && entry.field == field);
+        let found = self.entries.iter().find(|entry| entry.resource == resource && entry.field == field);
         found.map(|entry| &entry.bytes)
     }
 
     /// Adds or replaces the bytes of a field: how a package made ahead of time comes in.
     pub fn insert(&mut self, resource: usize, field: &str, bytes: impl Into<Arc<[u8]>>) {
-        self.entries
-            .retain(|entry| entry.resource != resource || entry.field != field);
-        self.entries.push(Entry {
-            resource,
-            field: field.to_string(),
-            bytes: bytes.into(),
-        });
+        self.entries.retain(|entry| entry.resource != resource || entry.field != field);
+        self.entries.push(Entry { resource, field: field.to_string(), bytes: bytes.into() });
     }
 
     /// All fields: resource, name, bytes; in the order of the manifest.
     pub fn iter(&self) -> impl Iterator<Item = (usize, &str, &[u8])> {
-        self.entries
-            .iter()
-            .map(|entry| (entry.resource, entry.field.as_str(), entry.bytes.as_ref()))
+        self.entries.iter().map(|entry| (entry.resource, entry.field.as_str(), entry.bytes.as_ref()))
     }
 }
 
@@ -71,11 +61,7 @@ impl Tables {
 ///
 /// # Errors
 /// Everything that is wrong with any resource, in the order of the resources.
-pub fn load(
-    graph: &Graph,
-    manifest: &mut Manifest,
-    project: &Project,
-) -> Result<Tables, Vec<Diagnostic>> {
+pub fn load(graph: &Graph, manifest: &mut Manifest, project: &Project) -> Result<Tables, Vec<Diagnostic>> {
     let made: Vec<Result<Vec<Made>, Vec<Diagnostic>>> = manifest
         .resources
         .par_iter()
@@ -84,11 +70,7 @@ pub fn load(
             if resource.textures.is_empty() {
                 return Ok(Vec::new());
             }
-            let place = graph
-                .resources
-                .get(index)
-                .map(|resource| resource.place)
-                .unwrap_or_default();
+            let place = graph.resources.get(index).map(|resource| resource.place).unwrap_or_default();
             make(project, place, &resource.recipe)
         })
         .collect();
@@ -100,22 +82,14 @@ pub fn load(
             Err(found) => errors.extend(found),
         }
     }
-    if errors.is_empty() {
-        Ok(tables)
-    } else {
-        Err(errors)
-    }
+    if errors.is_empty() { Ok(tables) } else { Err(errors) }
 }
 
 /// The kinds: which file makes what a recipe asks for.
 fn make(project: &Project, place: Place, recipe: &Recipe) -> Result<Vec<Made>, Vec<Diagnostic>> {
     match recipe {
         Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
-        Recipe::Patterns {
-            paths,
-            grid,
-            encoding,
-        } => patterns::make(project, place, paths, *grid, *encoding),
+        Recipe::Patterns { paths, grid, encoding } => patterns::make(project, place, paths, *grid, *encoding),
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
     }

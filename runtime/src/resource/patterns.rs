@@ -28,50 +28,26 @@ pub fn make(
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     let count = paths.len() as u64 * u64::from(grid[0]) * u64::from(grid[1]);
     if count > u64::from(table::MAX_LAYERS) {
-        return Err(vec![resources::too_many_layers(
-            place,
-            count,
-            table::MAX_LAYERS,
-        )]);
+        return Err(vec![resources::too_many_layers(place, count, table::MAX_LAYERS)]);
     }
     let Some(first) = paths.first().filter(|_| count > 0) else {
-        return Err(vec![resources::no_table(
-            place,
-            "there are no patterns",
-            "at least one is needed",
-        )]);
+        return Err(vec![resources::no_table(place, "there are no patterns", "at least one is needed")]);
     };
     let pictures = open_all(project, place, paths)?;
     let cell = cell(place, paths, &pictures, grid)?;
     let format = encoding::format(encoding, pictures.iter().any(Decoded::is_deep));
     table::check(place, first, format, cell, count as u32)?;
-    let readers: Vec<Reader<'_>> = pictures
-        .iter()
-        .map(|picture| Reader::new(picture, encoding))
-        .collect();
+    let readers: Vec<Reader<'_>> = pictures.iter().map(|picture| Reader::new(picture, encoding)).collect();
     let cells = grid[0] * grid[1];
-    Ok(vec![pyramid::build(
-        "layers",
-        format,
-        cell,
-        count as u32,
-        |layer, x, y| {
-            let (picture, within) = (layer / cells, layer % cells);
-            let (column, row) = (within % grid[0], within / grid[0]);
-            readers[picture as usize].texel(column * cell[0] + x, row * cell[1] + y)
-        },
-    )])
+    Ok(vec![pyramid::build("layers", format, cell, count as u32, |layer, x, y| {
+        let (picture, within) = (layer / cells, layer % cells);
+        let (column, row) = (within % grid[0], within / grid[0]);
+        readers[picture as usize].texel(column * cell[0] + x, row * cell[1] + y)
+    })])
 }
 
-fn open_all(
-    project: &Project,
-    place: Place,
-    paths: &[String],
-) -> Result<Vec<Decoded>, Vec<Diagnostic>> {
-    let opened: Vec<_> = paths
-        .par_iter()
-        .map(|path| decode::open(project, path, place))
-        .collect();
+fn open_all(project: &Project, place: Place, paths: &[String]) -> Result<Vec<Decoded>, Vec<Diagnostic>> {
+    let opened: Vec<_> = paths.par_iter().map(|path| decode::open(project, path, place)).collect();
     let (mut pictures, mut errors) = (Vec::new(), Vec::new());
     for result in opened {
         match result {
@@ -79,11 +55,7 @@ fn open_all(
             Err(found) => errors.extend(found),
         }
     }
-    if errors.is_empty() {
-        Ok(pictures)
-    } else {
-        Err(errors)
-    }
+    if errors.is_empty() { Ok(pictures) } else { Err(errors) }
 }
 
 /// The size of one pattern in texels.
@@ -93,18 +65,13 @@ fn cell(
     pictures: &[Decoded],
     grid: [u32; 2],
 ) -> Result<[u32; 2], Vec<Diagnostic>> {
-    let named: Vec<(&str, [u32; 2])> = paths
-        .iter()
-        .map(String::as_str)
-        .zip(pictures.iter().map(|picture| picture.size))
-        .collect();
+    let named: Vec<(&str, [u32; 2])> =
+        paths.iter().map(String::as_str).zip(pictures.iter().map(|picture| picture.size)).collect();
     let Some(&first) = named.first() else {
         return Ok([1, 1]);
     };
     let odd = named.iter().filter(|(_, size)| *size != first.1);
-    let errors: Vec<Diagnostic> = odd
-        .map(|other| resources::sizes_differ(place, first, *other))
-        .collect();
+    let errors: Vec<Diagnostic> = odd.map(|other| resources::sizes_differ(place, first, *other)).collect();
     if !errors.is_empty() {
         return Err(errors);
     }

@@ -22,20 +22,11 @@ const SALT: u32 = 0x7065_726d;
 pub fn make(place: Place, size: u32, seed: i32) -> Result<Vec<Made>, Vec<Diagnostic>> {
     if !(2..=MAX_SIZE).contains(&size) {
         let message = format!("a permutation of {size} numbers can't be made");
-        return Err(vec![resources::no_table(
-            place,
-            message,
-            format!("its size is 2 to {MAX_SIZE}"),
-        )]);
+        return Err(vec![resources::no_table(place, message, format!("its size is 2 to {MAX_SIZE}"))]);
     }
     let channels: [Vec<i32>; 4] = [0, 1, 2, 3].map(|channel| shuffle(size, channel, seed));
     let texels = (0..size as usize).flat_map(|i| channels.each_ref().map(|channel| channel[i]));
-    Ok(vec![Made::integers(
-        "table",
-        Format::Rgba32Sint,
-        [size, 1],
-        texels,
-    )])
+    Ok(vec![Made::integers("table", Format::Rgba32Sint, [size, 1], texels)])
 }
 
 fn shuffle(size: u32, channel: u32, seed: i32) -> Vec<i32> {

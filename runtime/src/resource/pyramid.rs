@@ -24,17 +24,10 @@ pub fn build(
     let table = table::layout(format, size, layers, true);
     let mut bytes = vec![0; table::bytes(&table) as usize];
     let writer = Writer::new(format);
-    by_layer(&table, &mut bytes)
-        .into_par_iter()
-        .enumerate()
-        .for_each(|(layer, levels)| {
-            write_layer(&writer, size, levels, |x, y| texel(layer as u32, x, y));
-        });
-    Made {
-        field,
-        table,
-        bytes,
-    }
+    by_layer(&table, &mut bytes).into_par_iter().enumerate().for_each(|(layer, levels)| {
+        write_layer(&writer, size, levels, |x, y| texel(layer as u32, x, y));
+    });
+    Made { field, table, bytes }
 }
 
 /// The bytes of every level, for each layer.
@@ -73,21 +66,13 @@ fn write_layer(
     }
 }
 
-fn write_level(
-    writer: &Writer,
-    width: u32,
-    bytes: &mut [u8],
-    texel: impl Fn(u32, u32) -> Vec4 + Sync,
-) {
+fn write_level(writer: &Writer, width: u32, bytes: &mut [u8], texel: impl Fn(u32, u32) -> Vec4 + Sync) {
     let texel_bytes = writer.format().bytes() as usize;
-    bytes
-        .par_chunks_mut(width as usize * texel_bytes)
-        .enumerate()
-        .for_each(|(y, row)| {
-            for (x, slot) in row.chunks_exact_mut(texel_bytes).enumerate() {
-                writer.write(texel(x as u32, y as u32), slot);
-            }
-        });
+    bytes.par_chunks_mut(width as usize * texel_bytes).enumerate().for_each(|(y, row)| {
+        for (x, slot) in row.chunks_exact_mut(texel_bytes).enumerate() {
+            writer.write(texel(x as u32, y as u32), slot);
+        }
+    });
 }
 
 /// One level in floats.
@@ -107,15 +92,12 @@ fn halve(size: [u32; 2], texel: impl Fn(u32, u32) -> Vec4 + Sync) -> Plane {
     let next = size.map(|side| (side / 2).max(1));
     let mut texels = vec![Vec4::ZERO; next[0] as usize * next[1] as usize];
     let columns: Vec<Taps> = (0..next[0]).map(|x| Taps::new(size[0], x)).collect();
-    texels
-        .par_chunks_mut(next[0] as usize)
-        .enumerate()
-        .for_each(|(y, row)| {
-            let rows = Taps::new(size[1], y as u32);
-            for (slot, columns) in row.iter_mut().zip(&columns) {
-                *slot = rows.sum(|y| columns.sum(|x| texel(x, y)));
-            }
-        });
+    texels.par_chunks_mut(next[0] as usize).enumerate().for_each(|(y, row)| {
+        let rows = Taps::new(size[1], y as u32);
+        for (slot, columns) in row.iter_mut().zip(&columns) {
+            *slot = rows.sum(|y| columns.sum(|x| texel(x, y)));
+        }
+    });
     Plane { size: next, texels }
 }
 
@@ -132,21 +114,9 @@ impl Taps {
         let (m, i64) = (f64::from(n / 2), f64::from(i));
         let share = |x: f64| (x / f64::from(n)) as f32;
         match n {
-            1 => Taps {
-                first: 0,
-                count: 1,
-                weights: [1.0, 0.0, 0.0],
-            },
-            n if n % 2 == 0 => Taps {
-                first: 2 * i,
-                count: 2,
-                weights: [0.5, 0.5, 0.0],
-            },
-            _ => Taps {
-                first: 2 * i,
-                count: 3,
-                weights: [share(m - i64), share(m), share(i64 + 1.0)],
-            },
+            1 => Taps { first: 0, count: 1, weights: [1.0, 0.0, 0.0] },
+            n if n % 2 == 0 => Taps { first: 2 * i, count: 2, weights: [0.5, 0.5, 0.0] },
+            _ => Taps { first: 2 * i, count: 3, weights: [share(m - i64), share(m), share(i64 + 1.0)] },
         }
     }
 
@@ -173,10 +143,7 @@ mod tests {
                 }
             }
             let even = f64::from(m) / f64::from(n);
-            assert!(
-                covered.iter().all(|share| (share - even).abs() < 1e-6),
-                "{n}"
-            );
+            assert!(covered.iter().all(|share| (share - even).abs() < 1e-6), "{n}");
         }
     }
 

@@ -31,11 +31,7 @@ impl Made {
         values: impl Iterator<Item = i32>,
     ) -> Made {
         let table = layout(format, size, 1, false);
-        Made {
-            field,
-            table,
-            bytes: values.flat_map(i32::to_le_bytes).collect(),
-        }
+        Made { field, table, bytes: values.flat_map(i32::to_le_bytes).collect() }
     }
 }
 
@@ -43,33 +39,16 @@ impl Made {
 /// padding.
 pub fn layout(format: Format, size: [u32; 2], layers: u32, mipmapped: bool) -> Table {
     let [width, height] = size;
-    let count = if mipmapped {
-        width.max(height).max(1).ilog2() + 1
-    } else {
-        1
-    };
+    let count = if mipmapped { width.max(height).max(1).ilog2() + 1 } else { 1 };
     let mut offset = 0;
     let levels = (0..count).map(|level| {
         let [width, height] = size.map(|side| (side >> level).max(1));
         let bytes_per_row = width * format.bytes();
-        let level = Level {
-            offset,
-            width,
-            height,
-            layers,
-            bytes_per_row,
-        };
+        let level = Level { offset, width, height, layers, bytes_per_row };
         offset += level_bytes(&level);
         level
     });
-    Table {
-        file: None,
-        format,
-        width,
-        height,
-        layers,
-        levels: levels.collect(),
-    }
+    Table { file: None, format, width, height, layers, levels: levels.collect() }
 }
 
 /// The bytes of a level, all layers.
@@ -94,16 +73,10 @@ pub fn check(
     layers: u32,
 ) -> Result<(), Vec<Diagnostic>> {
     if layers > MAX_LAYERS {
-        return Err(vec![resources::too_many_layers(
-            place,
-            u64::from(layers),
-            MAX_LAYERS,
-        )]);
+        return Err(vec![resources::too_many_layers(place, u64::from(layers), MAX_LAYERS)]);
     }
     if size.iter().any(|side| *side > MAX_SIDE) {
-        return Err(vec![resources::texture_too_large(
-            place, path, size, MAX_SIDE,
-        )]);
+        return Err(vec![resources::texture_too_large(place, path, size, MAX_SIDE)]);
     }
     let bytes = bytes(&layout(format, size, layers, true));
     if bytes > MAX_BYTES {

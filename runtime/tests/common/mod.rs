@@ -9,8 +9,8 @@ use tempfile::TempDir;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
 use texgraph_compiler::graph::Graph;
 use texgraph_compiler::manifest::{
-    Filter, Form, Gradients, Manifest, Pass, Recipe, Resource, SampleKind, Sampler, Texture, VERSION, ViewDimension,
-    Wrap,
+    Filter, Form, Gradients, Manifest, Pass, Recipe, Resource, SampleKind, Sampler, Texture, VERSION,
+    ViewDimension, Wrap,
 };
 use texgraph_runtime::project::Project;
 use texgraph_runtime::resource::{Tables, load};
@@ -39,7 +39,8 @@ pub fn write_picture(path: &Path, size: [u32; 2], samples: &[u8]) {
 /// Writes a grey picture of 16 bits.
 pub fn write_deep(path: &Path, size: [u32; 2], samples: &[u16]) {
     let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_ne_bytes()).collect();
-    image::save_buffer(path, &bytes, size[0], size[1], image::ExtendedColorType::L16).expect("the picture is written");
+    image::save_buffer(path, &bytes, size[0], size[1], image::ExtendedColorType::L16)
+        .expect("the picture is written");
 }
 
 /// A manifest with nothing in it.
@@ -72,7 +73,8 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Permutation { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
     };
-    let sampler = Sampler { name: format!("s{n}_"), group: 0, binding: 2 * n + 2, wrap, filter, anisotropy: 1 };
+    let sampler =
+        Sampler { name: format!("s{n}_"), group: 0, binding: 2 * n + 2, wrap, filter, anisotropy: 1 };
     Resource {
         name: format!("r{n}"),
         label: String::new(),
@@ -108,7 +110,8 @@ pub fn graph_of(manifest: &Manifest) -> Graph {
 pub fn load_recipes(folder: &Path, recipes: Vec<Recipe>) -> Result<(Manifest, Tables), Vec<Diagnostic>> {
     let mut manifest = manifest();
     let numbered = (0..).zip(recipes);
-    manifest.resources = numbered.map(|(n, recipe)| resource(recipe, n, Wrap::Repeat, Filter::Linear)).collect();
+    manifest.resources =
+        numbered.map(|(n, recipe)| resource(recipe, n, Wrap::Repeat, Filter::Linear)).collect();
     let graph = graph_of(&manifest);
     load(&graph, &mut manifest, &project(folder)).map(|tables| (manifest, tables))
 }

@@ -4,8 +4,8 @@ use super::{graph_of, manifest, project, resource};
 use std::path::Path;
 use texgraph_compiler::Program;
 use texgraph_compiler::graph::{
-    Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, ParamId, ResourceView, Scalar, Texel, Type,
-    Value, View, ViewDimension, ViewId,
+    Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, ParamId, ResourceView, Scalar,
+    Texel, Type, Value, View, ViewDimension, ViewId,
 };
 use texgraph_compiler::intrinsic::Intrinsic;
 use texgraph_compiler::manifest::{self, Filter, Input, Output, Param, Recipe, Source, Uniform, Wrap};
@@ -60,7 +60,13 @@ fn scale_param() -> texgraph_compiler::graph::Param {
 }
 
 /// Gives a program one resource, read through view 0, and loads it.
-fn with_resource(mut program: Program, folder: &Path, recipe: Recipe, wrap: Wrap, filter: Filter) -> (Program, Tables) {
+fn with_resource(
+    mut program: Program,
+    folder: &Path,
+    recipe: Recipe,
+    wrap: Wrap,
+    filter: Filter,
+) -> (Program, Tables) {
     let resource = resource(recipe, 0, wrap, filter);
     let texture = &resource.textures[0];
     let view = View {
@@ -211,7 +217,8 @@ pub fn arithmetic() -> Program {
     let data: Value = b.compose(&[u, v, time]);
     b.output("color", color);
     b.output("data", data);
-    let graph = Graph { functions: vec![callee, b.finish()], params: vec![scale_param()], ..Graph::default() };
+    let graph =
+        Graph { functions: vec![callee, b.finish()], params: vec![scale_param()], ..Graph::default() };
     let wgsl = "
         struct Params { scale: vec2<f32>, time: f32, pad: f32 }
         @group(1) @binding(3) var<uniform> params: Params;
