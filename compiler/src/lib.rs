@@ -9,6 +9,7 @@
 //! [`module::Loader`], and gets back plain data.
 
 mod check;
+pub mod color;
 mod contract;
 pub mod diagnostic;
 pub mod emit;
@@ -144,10 +145,11 @@ fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<(G
         return Err(if silent { vec![bug] } else { diagnostics });
     };
     let label = checker.doc(&key);
+    let head = checker.head_of(&key);
     let Some(mut graph) = checker.into_graph(&key) else {
         return Err(vec![limits::bug(main_place(modules), "a checked texture has no graph")]);
     };
-    choose_outputs(&mut graph, options, main_place(modules)).map_err(|diagnostic| vec![diagnostic])?;
+    choose_outputs(&mut graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
     Ok((graph, label))
 }
 
@@ -157,7 +159,8 @@ fn choose_outputs(graph: &mut Graph, options: &Options, place: Place) -> Result<
     for name in wanted {
         if !entry.outputs.iter().any(|(slot, _)| slot.name == *name) {
             let known: Vec<String> = entry.outputs.iter().map(|(slot, _)| format!("`{}`", slot.name)).collect();
-            return Err(limits::no_such_texture_output(place, name, &known.join(", ")));
+            let near = diagnostic::names::nearest(name, entry.outputs.iter().map(|(slot, _)| slot.name.as_str()));
+            return Err(limits::no_such_texture_output(place, name, &known.join(", "), near));
         }
     }
     entry.outputs.retain(|(slot, _)| wanted.contains(&slot.name));

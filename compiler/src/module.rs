@@ -99,6 +99,7 @@ pub fn load(main: &str, loader: &dyn Loader, library: &Library) -> Result<Module
         diagnostics: Vec::new(),
     };
     walk.run(main, loader);
+    walk.diagnostics.sort_by_key(|diagnostic| (diagnostic.place, diagnostic.code));
     if walk.diagnostics.is_empty() {
         Ok(Modules { sources: walk.sources, modules: walk.modules })
     } else {
@@ -144,15 +145,20 @@ impl Walk {
     /// Reads and parses one file.
     fn open(&mut self, path: &str, folder: &str, from: Option<Place>, loader: &dyn Loader) -> Option<Open> {
         self.seen.insert(path.to_owned(), None);
+        let file = self.sources.0.len() as u32;
+        let shown = if folder.is_empty() { path.to_owned() } else { format!("{folder}/{path}") };
         let text = match loader.load(path) {
             Ok(text) => text,
             Err(why) => {
-                self.diagnostics.push(imports::cannot_load(from.unwrap_or_default(), path, &why));
+                let place = from.unwrap_or_else(|| {
+                    // The main file itself: an empty text to point into.
+                    self.sources.0.push(Source { path: shown, text: "".into() });
+                    Place { file, ..Place::default() }
+                });
+                self.diagnostics.push(imports::cannot_load(place, path, &why));
                 return None;
             }
         };
-        let file = self.sources.0.len() as u32;
-        let shown = if folder.is_empty() { path.to_owned() } else { format!("{folder}/{path}") };
         self.sources.0.push(Source { path: shown, text: text.as_str().into() });
         match texgraph_grammar::parse(&text) {
             Ok(tree) => {

@@ -157,6 +157,12 @@ impl<'s> Place<'_, 's> {
             (TokenKind::Close, None) => self.here(Kind::Unopened {
                 close: self.text.chars().next()?,
             }),
+            // A brace is rarely the forgotten one: what meets it closes nothing.
+            (TokenKind::Close, Some(bracket)) if closes(&bracket.kind, "}") && self.text != "}" => {
+                self.here(Kind::Unopened {
+                    close: self.text.chars().next()?,
+                })
+            }
             (TokenKind::Close, Some(bracket)) if !closes(&bracket.kind, self.text) => open,
             // Where an expression is missing, that is the better thing to say.
             (TokenKind::Word, _) if begins_statement && !self.expects("an expression") => open,

@@ -14,8 +14,19 @@ pub struct Picture {
     pub size: [u32; 2],
     /// Row by row from the top; four floats a pixel, as the manifest's `Output` widens them.
     pub pixels: Vec<[f32; 4]>,
-    /// Linear premultiplied colour; else data.
-    pub is_color: bool,
+    /// What the floats mean.
+    pub content: Content,
+}
+
+/// What the floats of a picture mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// Linear premultiplied colour.
+    Color,
+    /// Directions, −1..1.
+    Normal,
+    /// Anything else.
+    Data,
 }
 
 /// How far two pictures are apart.
@@ -31,7 +42,8 @@ pub struct Difference {
 
 impl Picture {
     /// The bytes of a PNG file. Colour is un-premultiplied and sRGB-encoded in 8 bits; data is
-    /// written as it is, clamped to 0..1, in 16 bits. What is no number is 0. There is an alpha
+    /// written as it is, clamped to 0..1, in 16 bits; normals likewise as ½ + ½n. What is no number
+    /// is 0. There is an alpha
     /// channel only where a pixel is not opaque.
     ///
     /// # Errors
@@ -43,7 +55,7 @@ impl Picture {
                 reason: format!("{} pixels, where {wanted} belong", self.pixels.len()),
             });
         }
-        if self.is_color { self.color_png() } else { self.data_png() }
+        if self.content == Content::Color { self.color_png() } else { self.data_png() }
     }
 
     fn color_png(&self) -> Result<Vec<u8>, PictureError> {
@@ -64,12 +76,14 @@ impl Picture {
 
     fn data_png(&self) -> Result<Vec<u8>, PictureError> {
         let code = |x: f32| (x.clamp(0.0, 1.0) * 65535.0).round() as u16;
+        let (scale, offset) = if self.content == Content::Normal { (0.5, 0.5) } else { (1.0, 0.0) };
         let opaque = self.pixels.par_iter().all(|pixel| code(pixel[3]) == u16::MAX);
         let channels = if opaque { 3 } else { 4 };
         let mut bytes = vec![0; self.pixels.len() * channels * 2];
-        bytes.par_chunks_exact_mut(channels * 2).zip(&self.pixels).for_each(|(slot, pixel)| {
-            for (slot, x) in slot.chunks_exact_mut(2).zip(pixel) {
-                slot.copy_from_slice(&code(*x).to_ne_bytes());
+        bytes.par_chunks_exact_mut(channels * 2).zip(&self.pixels).for_each(|(slot, [x, y, z, w])| {
+            let [x, y, z] = [x, y, z].map(|c| c * scale + offset);
+            for (slot, x) in slot.chunks_exact_mut(2).zip([x, y, z, *w]) {
+                slot.copy_from_slice(&code(x).to_ne_bytes());
             }
         });
         let color = if opaque { ExtendedColorType::Rgb16 } else { ExtendedColorType::Rgba16 };
@@ -135,7 +149,7 @@ mod tests {
     }
 
     fn picture(pixels: &[[f32; 4]], is_color: bool) -> Picture {
-        Picture { size: [pixels.len() as u32, 1], pixels: pixels.to_vec(), is_color }
+        Picture { size: [pixels.len() as u32, 1], pixels: pixels.to_vec(), content: if is_color { Content::Color } else { Content::Data } }
     }
 
     #[test]
@@ -161,8 +175,8 @@ mod tests {
 
     #[test]
     fn broken_sizes_are_errors() {
-        assert!(Picture { size: [2, 2], pixels: vec![[0.0; 4]; 3], is_color: true }.to_png().is_err());
-        assert!(Picture { size: [0, 0], pixels: vec![], is_color: true }.to_png().is_err());
+        assert!(Picture { size: [2, 2], pixels: vec![[0.0; 4]; 3], content: Content::Color }.to_png().is_err());
+        assert!(Picture { size: [0, 0], pixels: vec![], content: Content::Color }.to_png().is_err());
     }
 
     #[test]

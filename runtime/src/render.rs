@@ -6,7 +6,7 @@
 use crate::cpu;
 #[cfg(feature = "gpu")]
 use crate::gpu::{Gpu, Preference};
-use crate::picture::Picture;
+use crate::picture::{Content, Picture};
 use crate::resource::Tables;
 use crate::settings::Settings;
 use crate::uniform::Draw;
@@ -61,7 +61,12 @@ impl Request {
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| RenderError::Memory { size: self.size })?;
         pixels.resize(count, [0.0; 4]);
-        Ok(Picture { size: self.size, pixels, is_color: output.is_color })
+        let content = match output.name.as_str() {
+            _ if output.is_color => Content::Color,
+            "normal" => Content::Normal,
+            _ => Content::Data,
+        };
+        Ok(Picture { size: self.size, pixels, content })
     }
 }
 

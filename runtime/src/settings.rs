@@ -5,7 +5,6 @@
 //! param's range is clamped to it, as whoever writes the uniform block must.
 
 use crate::nearest::nearest;
-use crate::resource::srgb_to_linear;
 use std::collections::BTreeMap;
 use std::fmt;
 use texgraph_compiler::manifest::{Manifest, Param, Scalar, Type, Value};
@@ -107,9 +106,8 @@ fn color(digits: &str) -> Option<[f32; 4]> {
         6 | 8 => nibbles.chunks(2).map(|pair| pair[0] * 16 + pair[1]).collect(),
         _ => return None,
     };
-    let alpha = f32::from(bytes.get(3).copied().unwrap_or(255)) / 255.0;
-    let light = |channel: usize| srgb_to_linear(f64::from(bytes[channel]) / 255.0) as f32 * alpha;
-    Some([light(0), light(1), light(2), alpha])
+    let alpha = bytes.get(3).copied().unwrap_or(255);
+    Some(texgraph_compiler::color::linear([bytes[0], bytes[1], bytes[2], alpha]))
 }
 
 fn clamp(value: &Value, range: Option<&(Value, Value)>) -> Value {

@@ -11,7 +11,7 @@ use texgraph_compiler::manifest::{
     self, Encoding, Filter, Format, Input, Level, Output, Recipe, Source, Table, Wrap,
 };
 use texgraph_runtime::cpu;
-use texgraph_runtime::picture::Picture;
+use texgraph_runtime::picture::{Content, Picture};
 use texgraph_runtime::render::{RenderError, Request};
 use texgraph_runtime::resource::Tables;
 use texgraph_runtime::settings::Settings;
@@ -166,12 +166,12 @@ fn calls_choices_inputs_and_outputs() {
     let mut request = scaled(&program, [4, 4], [0.5, 0.0]);
     request.time = 7.0;
     let color = render(&program, &Tables::default(), &request);
-    assert!(color.is_color);
+    assert_eq!(color.content, Content::Color);
     assert_eq!(color.pixels[0], [0.0, 0.125, 1.0, 1.0], "fract(8 · 1/8), u, normal.z, alpha");
     assert_eq!(color.pixels[2], [0.625, 0.0, 7.0, 1.0]);
     request.output = 1;
     let data = render(&program, &Tables::default(), &request);
-    assert!(!data.is_color);
+    assert_eq!(data.content, Content::Data);
     assert_eq!(data.pixels[5], [0.375, 0.375, 7.0, 1.0]);
 }
 

@@ -4,15 +4,16 @@
 mod common;
 
 use common::programs::{arithmetic, fetched, sampled, tiled};
-use common::{folder, write_deep, write_picture};
+use common::{folder, project, write_deep, write_picture};
 use libtest_mimic::{Arguments, Failed, Trial};
+use std::fs;
 use std::sync::{Arc, Mutex};
-use texgraph_compiler::Program;
 use texgraph_compiler::manifest::{Encoding, Filter, IndicesSource, Recipe, Value, Wrap};
+use texgraph_compiler::{Library, Options, Program, compile};
 use texgraph_runtime::cpu;
 use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::render::{RenderError, Request};
-use texgraph_runtime::resource::Tables;
+use texgraph_runtime::resource::{Tables, load};
 
 /// A filtered texel may differ by this much: filters round their weights.
 const FILTERED: f32 = 4.0 / 255.0;
@@ -28,6 +29,7 @@ const TESTS: &[(&str, Test)] = &[
     ("patterns_agree", patterns_agree),
     ("integers_are_equal", integers_are_equal),
     ("inputs_calls_and_outputs_agree", inputs_calls_and_outputs_agree),
+    ("a_compiled_program_agrees", a_compiled_program_agrees),
     ("tiles_have_no_seams", tiles_have_no_seams),
     ("a_broken_shader_is_an_error", a_broken_shader_is_an_error),
     ("missing_tables_are_errors", missing_tables_are_errors),
@@ -61,6 +63,9 @@ fn compare(
     let ours = cpu::render(program, tables, request, &|_| {}).map_err(|error| error.to_string())?;
     let scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
     let theirs = scene.render(request, &|_| {}).map_err(|error| error.to_string())?;
+    if ours.pixels.iter().all(|pixel| *pixel == ours.pixels[0]) {
+        return Err("the picture has one colour: it proves nothing".into());
+    }
     let difference = ours.difference(&theirs, tolerance);
     if difference.within < AGREE {
         return Err(format!("{difference:?} for {request:?}").into());
@@ -146,6 +151,45 @@ fn inputs_calls_and_outputs_agree(gpu: &Gpu) -> Result<(), Failed> {
         request.time = 2.5;
         request.output = output;
         compare(gpu, &program, &Tables::default(), &request, 1e-4)?;
+    }
+    Ok(())
+}
+
+/// From a file's text to pictures: every kind of resource, read through the library.
+const SOURCE: &str = r#"
+let tiles = patterns("tiles.png", grid: ivec2(4, 2))
+let photo = image("photo.png", wrap: mirror)
+let sigma = permutation(16, seed: 5)
+let areas = indices("areas.png", levels: 2)
+param cells: int = 6 in 1..=100
+texture ground(uv: vec2, time: float) -> (color: color, height: float) {
+    let (cell, at) = tile_map(uv, cells)
+    let tile = tiles.reference(virtual_index(cell, tiles.count), at)
+    let other = tiles.reference(sigma.at(cell.x + cell.y).x % tiles.count, at)
+    let below = photo.sample(uv * 2.5)
+    color = if areas.at(cell) == 1 { mix(tile, below, 0.5) } else { mix(other, below, 0.25) }
+    height = 0.5 + 0.5 * sin(6.0 * uv.x + time) * fract(3.0 * uv.y)
+}
+"#;
+
+fn a_compiled_program_agrees(gpu: &Gpu) -> Result<(), Failed> {
+    let folder = folder();
+    write_picture(&folder.path().join("tiles.png"), [128, 64], &noise(128 * 64 * 3));
+    write_picture(&folder.path().join("photo.png"), [50, 31], &noise(50 * 31 * 4));
+    write_picture(&folder.path().join("areas.png"), [8, 8], &noise(64));
+    fs::write(folder.path().join("main.tex"), SOURCE)?;
+    let project = project(folder.path());
+    let library = Library::standard()?;
+    let compiled = compile(&library, project.main(), &project, &Options::default());
+    let mut program = compiled.map_err(|failure| format!("{:#?}", failure.diagnostics))?.program;
+    let tables =
+        load(&program.graph, &mut program.manifest, &project).map_err(|errors| format!("{errors:#?}"))?;
+    for output in 0..program.manifest.outputs.len() {
+        let mut request = Request { output, time: 1.5, ..Request::new([200, 150]) };
+        request.region = [-0.51, 0.02, 0.93, 1.13];
+        compare(gpu, &program, &tables, &request, FILTERED)?;
+        request.settings.parse(&program.manifest, "cells=31").map_err(|error| error.to_string())?;
+        compare(gpu, &program, &tables, &request, FILTERED)?;
     }
     Ok(())
 }

@@ -3,8 +3,9 @@
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;
 use super::{Checker, Frame};
-use crate::diagnostic::{Place, names, types as errors};
-use crate::graph::{Scalar, Type, Value};
+use crate::diagnostic::{Place, types as errors};
+use crate::graph::{Scalar, Texel, Type, Value};
+use crate::resource::{FieldKind, KINDS};
 use texgraph_grammar::syntax::{Dim, Input, Name};
 
 /// An argument, evaluated.
@@ -88,17 +89,23 @@ impl<'a> Checker<'a> {
             let error = match (position, argument.name) {
                 (Some(i), name) if slots[i].is_some() => {
                     let at = name.map_or(argument.place, |name| self.place(f, name.span));
-                    errors::argument_twice(at, head.name, &head.inputs[i].name.text)
+                    let first = slots[i].as_ref().map_or(at, |first| first.place);
+                    errors::argument_twice(at, head.name, &head.inputs[i].name.text, first)
                 }
                 (Some(i), _) => {
                     slots[i] = Some(argument);
                     continue;
                 }
                 (None, Some(name)) => {
-                    let near = names::nearest(&name.text, head.inputs.iter().map(|i| i.name.text.as_str()));
+                    let near = self.near(&name.text, head.inputs.iter().map(|i| i.name.text.as_str()));
                     errors::unknown_argument(self.place(f, name.span), head.name, &name.text, near)
                 }
-                (None, None) => errors::too_many_arguments(argument.place, head.name, head.inputs.len()),
+                (None, None) if fine => {
+                    let inputs: Vec<&str> = head.inputs.iter().map(|input| input.name.text.as_str()).collect();
+                    errors::too_many_arguments(argument.place, head.name, &inputs)
+                }
+                // The first of several was reported.
+                (None, None) => continue,
             };
             self.report(f, error);
             fine = false;
@@ -123,10 +130,14 @@ impl<'a> Checker<'a> {
         place: Place,
     ) -> Option<Dims> {
         let mut dims = Dims::new();
+        if dim.is_some() && head.dims.is_empty() {
+            self.report(f, errors::no_dimension(place, head.name));
+            return None;
+        }
         for (i, variable) in head.dims.iter().enumerate() {
             let mut width = 1;
             if let Some(dim) = dim.filter(|_| i == 0) {
-                match types::width_of(Some(dim), &f.dims, place) {
+                match types::width_of(head.name, Some(dim), &f.dims, place) {
                     Ok(explicit) => width = explicit,
                     Err(error) => {
                         self.report(f, error);
@@ -195,10 +206,11 @@ impl<'a> Checker<'a> {
         let module = std::mem::replace(&mut f.module, head.module);
         let dims = std::mem::replace(&mut f.dims, bound.dims.clone());
         let scopes = std::mem::replace(&mut f.scopes, vec![scope]);
+        let unknown = std::mem::take(&mut f.unknown);
         f.foreign += 1;
         let wire = self.expr(f, default);
         f.foreign -= 1;
-        (f.module, f.dims, f.scopes) = (module, dims, scopes);
+        (f.module, f.dims, f.scopes, f.unknown) = (module, dims, scopes, unknown);
         wire
     }
 
@@ -208,8 +220,9 @@ impl<'a> Checker<'a> {
         match (declared, wire) {
             (_, Wire::Unknown) => Wire::Unknown,
             (Declared::Vector(scalar, width), wire) => {
-                self.coerce_value(f, &wire, *scalar, *width, place).map_or(Wire::Unknown, Wire::Value)
+                self.coerce_named(f, &wire, (*scalar, *width), place, Some(input)).map_or(Wire::Unknown, Wire::Value)
             }
+            (Declared::Choice(words), Wire::Text(_)) => self.report(f, errors::quoted_choice(place, input, words)),
             (Declared::Choice(words), wire) => {
                 let written = match &wire {
                     Wire::Word(word, _) => Some(word.as_str()),
@@ -217,7 +230,7 @@ impl<'a> Checker<'a> {
                 };
                 match written.filter(|word| words.iter().any(|w| w == word)) {
                     Some(word) => Wire::Word(word.to_owned(), place),
-                    None => self.report(f, errors::unknown_choice(place, input, words)),
+                    None => self.report(f, errors::unknown_choice(place, input, words, written.unwrap_or_default())),
                 }
             }
             (Declared::Resource(kind), Wire::Resource(resource)) if resource.kind == *kind => Wire::Resource(resource),
@@ -228,12 +241,12 @@ impl<'a> Checker<'a> {
             (declared, wire) => {
                 let found = types::describe(&wire, |v| f.builder.ty(v));
                 let wanted = match declared {
-                    Declared::Resource(kind) => crate::resource::KINDS[*kind].name,
-                    Declared::Text => "a string",
-                    Declared::Texts => "a string or a list of strings",
-                    _ => "a string or a list of lists",
+                    Declared::Resource(kind) => format!("`{}`", KINDS[*kind].name),
+                    Declared::Text => "a string".to_owned(),
+                    Declared::Texts => "a string or a list of strings".to_owned(),
+                    _ => "a string or a list of lists".to_owned(),
                 };
-                self.report(f, errors::resource_mismatch(place, wanted, &found))
+                self.report(f, errors::resource_mismatch(place, input, &wanted, &found))
             }
         }
     }
@@ -250,12 +263,33 @@ impl<'a> Checker<'a> {
                 let names: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
                 self.report(f, errors::record_as_value(place, &names));
             }
+            Wire::Resource(resource) => {
+                let nodes = self.readers(resource.kind);
+                self.report(f, errors::resource_as_value(place, KINDS[resource.kind].name, &nodes));
+            }
             other => {
                 let what = types::describe(other, |v| f.builder.ty(v));
-                self.report(f, errors::not_a_value(place, &format!("`{what}`")));
+                self.report(f, errors::not_a_value(place, &what));
             }
         }
         None
+    }
+
+    /// The library's nodes that read a kind of resource, and what every view has.
+    fn readers(&self, kind: usize) -> Vec<String> {
+        let library = self.library;
+        let mut readers: Vec<String> = Vec::new();
+        for name in library.callable_names() {
+            let first = library.callables(name).iter().filter_map(|callable| self.head(*callable)?.inputs.first());
+            if first.into_iter().any(|input| types::kind_of(&input.ty) == Some(kind)) {
+                readers.push(name.to_owned());
+            }
+        }
+        let sampled = KINDS[kind].fields.iter().any(|field| {
+            Some(field.name) == KINDS[kind].view
+                && matches!(field.kind, FieldKind::View(view) if view.texel == Texel::Sampled)
+        });
+        if sampled { vec!["sample".to_owned()] } else { readers }
     }
 
     /// A wire as a value of that scalar and width: ints widen, scalars spread.
@@ -267,13 +301,25 @@ impl<'a> Checker<'a> {
         width: u8,
         place: Place,
     ) -> Option<Value> {
+        self.coerce_named(f, wire, (scalar, width), place, None)
+    }
+
+    /// The same for an input or output of that name.
+    pub fn coerce_named(
+        &mut self,
+        f: &mut Frame<'a>,
+        wire: &Wire,
+        (scalar, width): (Scalar, u8),
+        place: Place,
+        name: Option<&str>,
+    ) -> Option<Value> {
         let value = self.value(f, wire, place)?;
         let ty = f.builder.ty(value);
         let fits = ty.scalar().is_some_and(|found| types::widens(found, scalar));
         if !fits || (ty.width() != 1 && ty.width() != width) {
             let wanted = types::name(Type::Vector(scalar, width));
             let found = types::name(ty);
-            self.report(f, errors::mismatch(place, &wanted, &found));
+            self.report(f, errors::mismatch(place, name, &wanted, &found));
             return None;
         }
         f.builder.set_place(place);

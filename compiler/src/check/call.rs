@@ -1,7 +1,7 @@
 //! Calls: which node, intrinsic or constructor a name means, and what calling it gives.
 
 use super::arguments::{Bound, Given, Head};
-use super::types::{self, Declared};
+use super::types;
 use super::wire::{ArgumentKey, Key, Wire};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, names, types as errors, unsupported};
@@ -9,7 +9,7 @@ use crate::graph::{Axis, Level, Operation, Scalar, Type, Value};
 use crate::library::Callable;
 use crate::resource::{KINDS, LATER};
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Argument, Call, Expr, ExprKind, Span};
+use texgraph_grammar::syntax::{Argument, Call, Expr, ExprKind, Input, Span, TypeKind};
 
 impl<'a> Checker<'a> {
     /// `name<n>(arguments)`
@@ -23,7 +23,7 @@ impl<'a> Checker<'a> {
             return wire;
         }
         if candidates.is_empty() {
-            return self.no_callable(f, call);
+            return self.no_callable(f, call, &given);
         }
         self.call_one_of(f, &candidates, call, given, place)
     }
@@ -37,6 +37,11 @@ impl<'a> Checker<'a> {
         {
             return wire;
         }
+        if matches!(base, Wire::Unknown) {
+            // What is called on something unknown is unknown too.
+            return Wire::Unknown;
+        }
+        let sampled = matches!(call.name.text.as_str(), "sample" | "texel" | "level");
         let receiver = Given { name: None, wire: base, place: base_place, word: None };
         let given: Vec<Given<'a>> = std::iter::once(receiver).chain(arguments).collect();
         let candidates = self.callables_of(f.module, &call.name.text);
@@ -44,9 +49,24 @@ impl<'a> Checker<'a> {
             if let Some(wire) = self.special(f, call, &given, place) {
                 return wire;
             }
-            return self.no_callable(f, call);
+            return if sampled { self.no_view(f, call, &given[0]) } else { self.no_callable(f, call, &given) };
         }
         self.call_one_of(f, &candidates, call, given, place)
+    }
+
+    /// `sample` of something that has no texels of its own.
+    fn no_view(&mut self, f: &mut Frame<'a>, call: &Call, base: &Given<'a>) -> Wire {
+        let name = &call.name.text;
+        let at = self.place(f, call.name.span);
+        let found = types::describe(&base.wire, |v| f.builder.ty(v));
+        let views: Vec<String> = KINDS.iter().filter(|kind| kind.view.is_some()).map(|kind| format!("`{}`", kind.name)).collect();
+        let mut error = errors::bad_receiver(at, name, &found, &views);
+        if let Wire::Resource(resource) = &base.wire
+            && let Some((field, _)) = resource.views.first()
+        {
+            error = error.help(format!("it has a view of its own: `.{field}.{name}(…)`"));
+        }
+        self.report(f, error)
     }
 
     /// A call of an item of an imported file.
@@ -55,9 +75,11 @@ impl<'a> Checker<'a> {
         let given = self.given(f, &call.arguments);
         let candidates = self.own_callables(module, &call.name.text);
         if candidates.is_empty() {
-            let known = self.modules[module].tree.items.iter().filter_map(super::globals::name_of);
-            let near = names::nearest(&call.name.text, known.map(|name| name.text.as_str()));
             let at = self.place(f, call.name.span);
+            if self.globals[module].contains_key(&call.name.text) {
+                return self.report(f, names::value_as_node(at, &format!("{alias}.{}", call.name.text)));
+            }
+            let near = self.near_item(module, &call.name.text);
             return self.report(f, crate::diagnostic::imports::no_such_item(at, alias, &call.name.text, near));
         }
         self.call_one_of(f, &candidates, call, given, place)
@@ -91,11 +113,11 @@ impl<'a> Checker<'a> {
         found
     }
 
-    fn own_callables(&self, module: usize, name: &str) -> Vec<Callable> {
+    pub(super) fn own_callables(&self, module: usize, name: &str) -> Vec<Callable> {
         self.callables[module].get(name).cloned().unwrap_or_default()
     }
 
-    fn head(&self, callable: Callable) -> Option<Head<'a>> {
+    pub(super) fn head(&self, callable: Callable) -> Option<Head<'a>> {
         let library: &'a crate::library::Library = self.library;
         match callable {
             Callable::Node(module, item) => self.node(module, item).map(|node| Head {
@@ -131,6 +153,7 @@ impl<'a> Checker<'a> {
     ) -> Wire {
         if given.iter().any(|given| matches!(given.wire, Wire::Unknown)) {
             f.failed |= f.waiting.is_empty();
+            self.words(f, candidates, &given);
             return Wire::Unknown;
         }
         let heads: Vec<(Callable, Head<'a>)> =
@@ -145,6 +168,22 @@ impl<'a> Checker<'a> {
             (Some((callable, head)), _) => self.apply(f, callable, head, call, given, place),
             (None, [(callable, head)]) => self.apply(f, *callable, *head, call, given, place),
             (None, _) => self.no_receiver(f, &heads, call, &given, place),
+        }
+    }
+
+    /// Reports the arguments that are unknown names, in a call that is wrong elsewhere too.
+    fn words(&mut self, f: &mut Frame<'a>, candidates: &[Callable], given: &[Given<'a>]) {
+        let inputs = candidates.iter().filter_map(|callable| self.head(*callable)).flat_map(|head| head.inputs);
+        let chooses = |word: &str, input: &Input| {
+            matches!(&input.ty.kind, TypeKind::Choice(words) if words.iter().any(|known| known.text == word))
+        };
+        let inputs: Vec<&'a Input> = inputs.collect();
+        for argument in given {
+            if let Wire::Word(word, at) = &argument.wire
+                && !inputs.iter().any(|input| chooses(word, input))
+            {
+                self.unknown_value(f, word, *at);
+            }
         }
     }
 
@@ -261,7 +300,7 @@ impl<'a> Checker<'a> {
                 Wire::Value(f.builder.constant(crate::graph::Constant::bools(&[holds])))
             }
             [] => self.report(f, errors::missing_argument(place, "given", "resource", "resource")),
-            [_, second, ..] => self.report(f, errors::too_many_arguments(second.place, "given", 1)),
+            [_, second, ..] => self.report(f, errors::too_many_arguments(second.place, "given", &["resource"])),
         }
     }
 
@@ -269,7 +308,7 @@ impl<'a> Checker<'a> {
         let [one] = given else {
             let name = if axis == Axis::X { "dx" } else { "dy" };
             let error = match given.get(1) {
-                Some(second) => errors::too_many_arguments(second.place, name, 1),
+                Some(second) => errors::too_many_arguments(second.place, name, &["value"]),
                 None => errors::missing_argument(place, name, "value", "vec<n>"),
             };
             return self.report(f, error);
@@ -277,7 +316,7 @@ impl<'a> Checker<'a> {
         let Some(value) = self.value(f, &one.wire, one.place) else { return Wire::Unknown };
         let value = f.builder.to_float(value);
         if !f.builder.ty(value).is_float() {
-            return self.report(f, errors::mismatch(one.place, "float", &types::name(f.builder.ty(value))));
+            return self.report(f, errors::mismatch(one.place, None, "float", &types::name(f.builder.ty(value))));
         }
         let ty = f.builder.ty(value);
         Wire::Value(f.builder.push(Operation::Derivative(value, axis), ty))
@@ -294,8 +333,12 @@ impl<'a> Checker<'a> {
         place: Place,
     ) -> Wire {
         let width = match width {
+            Some(_) if call.dim.is_some() => {
+                let at = self.place(f, call.name.span);
+                return self.report(f, errors::no_dimension(at, &call.name.text));
+            }
             Some(width) => width,
-            None => match types::width_of(call.dim.as_ref(), &f.dims, place) {
+            None => match types::width_of(&call.name.text, call.dim.as_ref(), &f.dims, place) {
                 Ok(width) => width,
                 Err(error) => return self.report(f, error),
             },
@@ -310,7 +353,7 @@ impl<'a> Checker<'a> {
                 (wanted, Some(found)) if wanted == found => value,
                 _ => {
                     let (wanted, found) = (types::name(Type::Vector(scalar, 1)), types::name(f.builder.ty(value)));
-                    return self.report(f, errors::mismatch(argument.place, &wanted, &found));
+                    return self.report(f, errors::mismatch(argument.place, None, &wanted, &found));
                 }
             };
             parts.push(value);
@@ -360,7 +403,11 @@ impl<'a> Checker<'a> {
             };
             match position.and_then(|i| slots.get_mut(i)) {
                 Some(slot) if slot.is_none() => *slot = Some((argument.wire.clone(), argument.place)),
-                Some(_) => return Some(self.report(f, errors::argument_twice(argument.place, name, inputs[0]))),
+                Some(slot) => {
+                    let first = slot.as_ref().map_or(place, |(_, first)| *first);
+                    let input = argument.name.map_or(inputs[0], |name| name.text.as_str());
+                    return Some(self.report(f, errors::argument_twice(argument.place, name, input, first)));
+                }
                 None => return Some(self.view_argument_error(f, name, inputs, argument)),
             }
         }
@@ -386,10 +433,10 @@ impl<'a> Checker<'a> {
     fn view_argument_error(&mut self, f: &mut Frame<'a>, name: &str, inputs: &[&str], argument: &Given<'a>) -> Wire {
         let error = match argument.name {
             Some(written) => {
-                let near = names::nearest(&written.text, inputs.iter().copied());
+                let near = self.near(&written.text, inputs.iter().copied());
                 errors::unknown_argument(self.place(f, written.span), name, &written.text, near)
             }
-            None => errors::too_many_arguments(argument.place, name, 1),
+            None => errors::named_only(argument.place, name, inputs.get(1..).unwrap_or_default()),
         };
         self.report(f, error)
     }
@@ -399,7 +446,7 @@ impl<'a> Checker<'a> {
         let value = self.value(f, wire, place)?;
         if f.builder.ty(value).width() != width {
             let (wanted, found) = (types::name(Type::Vector(scalar, width)), types::name(f.builder.ty(value)));
-            self.report(f, errors::mismatch(place, &wanted, &found));
+            self.report(f, errors::mismatch(place, None, &wanted, &found));
             return None;
         }
         self.coerce_value(f, wire, scalar, width, place)
@@ -416,11 +463,11 @@ impl<'a> Checker<'a> {
         let array = ty.dimension == crate::graph::ViewDimension::D2Array;
         match slot {
             Some((_, at)) if !array => {
-                self.report(f, errors::unknown_argument(at, name, "layer", None));
+                self.report(f, errors::no_layers(at, name));
                 Err(())
             }
             None if array => {
-                self.report(f, errors::missing_argument(place, name, "layer", "int"));
+                self.report(f, errors::missing_layer(place, name));
                 Err(())
             }
             Some((wire, at)) => self.coerce_value(f, &wire, Scalar::Int, 1, at).map(Some).ok_or(()),
@@ -440,16 +487,25 @@ impl<'a> Checker<'a> {
         Some(Level::Gradient(x, y))
     }
 
-    fn no_callable(&mut self, f: &mut Frame<'a>, call: &Call) -> Wire {
+    fn no_callable(&mut self, f: &mut Frame<'a>, call: &Call, given: &[Given<'a>]) -> Wire {
+        if given.iter().any(|given| matches!(given.wire, Wire::Word(..))) {
+            // A word may be a choice of whatever was meant.
+            let names = self.library.callable_names();
+            let all: Vec<Callable> = names.iter().flat_map(|name| self.library.callables(name)).copied().collect();
+            self.words(f, &all, given);
+        }
         let place = self.place(f, call.name.span);
         let name = call.name.text.as_str();
         if self.is_value(f, name) {
+            if f.scopes.iter().rev().find_map(|scope| scope.get(name)).is_some_and(|wire| matches!(wire, Wire::Unknown)) {
+                return Wire::Unknown;
+            }
             return self.report(f, names::value_as_node(place, name));
         }
         let own = self.modules[f.module].tree.items.iter().filter_map(super::globals::node_of);
         let own: Vec<&str> = own.map(|node| node.name.text.as_str()).collect();
         let known = own.into_iter().chain(self.library.callable_names()).chain(SPECIAL.iter().copied());
-        let near = names::nearest(name, known);
+        let near = self.near(name, known);
         self.report(f, names::unknown_callable(place, name, near))
     }
 }
@@ -491,16 +547,10 @@ fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, given: &Given
     match (&given.wire, types::scalar_of(&input.ty)) {
         (Wire::Value(value), Some(wanted)) => {
             let ty = f.builder.ty(*value);
-            let fixed = types::resolve(&input.ty, &Vec::new(), 0).ok();
-            let width = match fixed {
-                Some(Declared::Vector(_, width)) => ty.width() == 1 || ty.width() == width,
-                _ => true,
-            };
+            let width = types::fixed_width(&input.ty).is_none_or(|width| ty.width() == 1 || ty.width() == width);
             width && ty.scalar().is_some_and(|found| types::widens(found, wanted))
         }
-        (Wire::Resource(resource), None) => {
-            types::resolve(&input.ty, &Vec::new(), 0) == Ok(Declared::Resource(resource.kind))
-        }
+        (Wire::Resource(resource), None) => types::kind_of(&input.ty) == Some(resource.kind),
         (Wire::Word(..) | Wire::None | Wire::Text(_) | Wire::List(_), None) => true,
         _ => false,
     }

@@ -7,13 +7,14 @@ use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, ResourceView, Scalar, Type, ViewId};
 use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource};
 use std::rc::Rc;
+use texgraph_grammar::syntax::Input;
 
 impl<'a> Checker<'a> {
     /// Makes the resource of a constructor call, or finds the one made before.
     pub(super) fn construct(&mut self, f: &mut Frame<'a>, kind: usize, head: Head<'a>, bound: Bound, place: Place) -> Wire {
         let mut values = Vec::new();
         for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
-            match argument(f, &input.name.text, wire, *at) {
+            match argument(f, input, wire, *at) {
                 Ok(argument) => values.push((input.name.text.clone(), *at, argument)),
                 Err(diagnostic) => return self.report(f, diagnostic),
             }
@@ -78,35 +79,46 @@ pub fn view_field(f: &mut Frame<'_>, view: crate::graph::Value, name: &str) -> O
 }
 
 /// A wire as a constructor takes it.
-fn argument(f: &Frame<'_>, input: &str, wire: &Wire, place: Place) -> Result<Argument, Diagnostic> {
+fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<Argument, Diagnostic> {
+    let name = input.name.text.as_str();
     match wire {
         Wire::Text(text) => Ok(Argument::Text(text.clone())),
         Wire::Word(word, _) => Ok(Argument::Word(word.clone())),
         Wire::Value(value) => match f.builder.as_constant(*value) {
             Some(constant) => Ok(Argument::Number(constant)),
-            None => Err(constructors::not_known(place, input)),
+            None => Err(constructors::not_known(place, name)),
         },
-        Wire::List(items) => list(f, input, items, place),
-        _ => Err(constructors::wrong_argument(place, input, "a constant")),
+        Wire::List(items) if crate::check::types::show(&input.ty) == "texts" => texts(name, items, place),
+        Wire::List(items) => rows(f, name, items, place),
+        _ => Err(constructors::wrong_argument(place, name, "a constant")),
     }
 }
 
-/// A list of strings, or of rows of ints.
-fn list(f: &Frame<'_>, input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument, Diagnostic> {
-    let mut texts = Vec::new();
-    let mut rows = Vec::new();
-    for (wire, at) in items {
-        match wire {
-            Wire::Text(text) => texts.push(text.clone()),
-            Wire::List(row) => rows.push(ints(f, input, row)?),
-            _ => return Err(constructors::wrong_argument(*at, input, "strings, or rows of ints")),
-        }
+const TEXTS: &str = "a string, or a list of strings";
+const ROWS: &str = "a string, or rows of ints such as `[[0, 1], [1, 0]]`";
+
+/// A list of strings.
+fn texts(input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument, Diagnostic> {
+    if items.is_empty() {
+        return Err(constructors::wrong_argument(place, input, TEXTS));
     }
-    match (texts.is_empty(), rows.is_empty()) {
-        (false, true) => Ok(Argument::Texts(texts)),
-        (true, false) => Ok(Argument::Rows(rows)),
-        _ => Err(constructors::wrong_argument(place, input, "strings, or rows of ints")),
+    let text = |(wire, at): &(Wire, Place)| match wire {
+        Wire::Text(text) => Ok(text.clone()),
+        _ => Err(constructors::wrong_argument(*at, input, TEXTS)),
+    };
+    items.iter().map(text).collect::<Result<_, _>>().map(Argument::Texts)
+}
+
+/// Rows of ints.
+fn rows(f: &Frame<'_>, input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument, Diagnostic> {
+    if items.is_empty() {
+        return Err(constructors::wrong_argument(place, input, ROWS));
     }
+    let row = |(wire, at): &(Wire, Place)| match wire {
+        Wire::List(row) => ints(f, input, row),
+        _ => Err(constructors::wrong_argument(*at, input, ROWS)),
+    };
+    items.iter().map(row).collect::<Result<_, _>>().map(Argument::Rows)
 }
 
 fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, Diagnostic> {
@@ -114,10 +126,10 @@ fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, D
         .map(|(wire, at)| match wire {
             Wire::Value(value) => match f.builder.as_constant(*value) {
                 Some(c) if c.ty() == Type::Vector(Scalar::Int, 1) => Ok(c.int(0)),
-                Some(_) => Err(constructors::wrong_argument(*at, input, "ints")),
+                Some(_) => Err(constructors::wrong_argument(*at, input, ROWS)),
                 None => Err(constructors::not_known(*at, input)),
             },
-            _ => Err(constructors::wrong_argument(*at, input, "ints")),
+            _ => Err(constructors::wrong_argument(*at, input, ROWS)),
         })
         .collect()
 }

@@ -26,7 +26,7 @@ impl<'a> Checker<'a> {
             }
             ExprKind::Float(_) => self.report(f, errors::float_too_large(place)),
             ExprKind::Bool(value) => Wire::Value(f.builder.constant(Constant::bools(&[*value]))),
-            ExprKind::Color(channels) => Wire::Value(f.builder.constant(color(*channels))),
+            ExprKind::Color(channels) => Wire::Value(f.builder.constant(Constant::floats(&crate::color::linear(*channels)))),
             ExprKind::Text(text) => Wire::Text(text.clone()),
             ExprKind::Name(name) => self.name(f, name, place),
             ExprKind::Paren(inner) => self.expr(f, inner),
@@ -71,6 +71,10 @@ impl<'a> Checker<'a> {
 
     /// Reports a name that is no value.
     pub(super) fn unknown_value(&mut self, f: &mut Frame<'a>, name: &str, place: Place) -> Wire {
+        if f.unknown.contains(name) {
+            f.failed = true;
+            return Wire::Unknown;
+        }
         if self.alias(f.module, name).is_some() {
             return self.report(f, names::alias_as_value(place, name));
         }
@@ -80,13 +84,20 @@ impl<'a> Checker<'a> {
         {
             return self.report(f, names::node_as_value(place, name));
         }
+        f.unknown.insert(name);
+        let stem = |import: &crate::module::Import| self.modules[import.module].path.rsplit('/').next()?.strip_suffix(".tex");
+        if module.imports.iter().any(|import| import.alias.is_none() && stem(import) == Some(name)) {
+            return self.report(f, names::missing_alias(place, name));
+        }
         let near = {
+            // What the statement itself binds can't be meant.
+            let own = f.order.get(f.next).and_then(|step| f.steps.get(*step)).map_or(Vec::new(), super::Step::names);
             let scoped = f.scopes.iter().flat_map(|scope| scope.keys().copied());
             let later = f.steps.iter().flat_map(super::Step::names);
             let items = self.globals[f.module].keys().map(String::as_str);
-            let mut known: Vec<&str> = scoped.chain(later).chain(items).collect();
-            known.sort_unstable();
-            names::nearest(name, known)
+            let aliases = module.imports.iter().filter_map(|import| Some(import.alias.as_ref()?.text.as_str()));
+            let known = scoped.chain(later).chain(items).chain(aliases);
+            self.near(name, known.filter(|known| !own.contains(known)))
         };
         self.report(f, names::unknown_value(place, name, near))
     }
@@ -113,7 +124,7 @@ impl<'a> Checker<'a> {
             let result = match link {
                 Postfix::Field(name) => self.field(f, wire.clone(), name),
                 Postfix::Method(call, span) => self.method(f, wire.clone(), place, call, *span),
-                Postfix::Index(index, span) => self.index(f, wire.clone(), index, *span),
+                Postfix::Index(index, span) => self.index(f, wire.clone(), place, index, *span),
             };
             if f.waiting.len() > waiting {
                 if f.foreign == 0 && !matches!(wire, Wire::Unknown) {
@@ -156,9 +167,18 @@ impl<'a> Checker<'a> {
             return self.global_wire(f, global);
         }
         let place = self.place(f, name.span);
-        let known = self.modules[module].tree.items.iter().filter_map(super::globals::name_of);
-        let near = names::nearest(&name.text, known.map(|n| n.text.as_str()));
+        let full = format!("{alias}.{}", name.text);
+        if !self.own_callables(module, &name.text).is_empty() {
+            return self.report(f, names::node_as_value(place, &full));
+        }
+        let near = self.near_item(module, &name.text);
         self.report(f, imports::no_such_item(place, alias, &name.text, near))
+    }
+
+    /// The item of a module that was most likely meant.
+    pub(super) fn near_item(&self, module: usize, name: &str) -> Option<String> {
+        let known = self.modules[module].tree.items.iter().filter_map(super::globals::name_of);
+        self.near(name, known.map(|known| known.text.as_str()))
     }
 
     fn field(&mut self, f: &mut Frame<'a>, wire: Wire, name: &Name) -> Wire {
@@ -169,7 +189,7 @@ impl<'a> Checker<'a> {
             Wire::Record(outputs) => match outputs.iter().find(|(output, _)| *output == name.text) {
                 Some((_, wire)) => wire.clone(),
                 None => {
-                    let near = names::nearest(&name.text, outputs.iter().map(|(output, _)| output.as_str()));
+                    let near = self.near(&name.text, outputs.iter().map(|(output, _)| output.as_str()));
                     self.report(f, names::unknown_field(place, "this record", &name.text, near))
                 }
             },
@@ -184,14 +204,14 @@ impl<'a> Checker<'a> {
             Wire::Value(value) => self.swizzle(f, *value, name, place),
             other => {
                 let what = types::describe(other, |v| f.builder.ty(v));
-                self.report(f, names::unknown_field(place, &format!("a {what}"), &name.text, None))
+                self.report(f, names::unknown_field(place, &what, &name.text, None))
             }
         }
     }
 
     fn unknown_resource_field(&mut self, f: &mut Frame<'a>, kind: usize, name: &Name, place: Place) -> Wire {
         let kind = &crate::resource::KINDS[kind];
-        let near = names::nearest(&name.text, kind.fields.iter().map(|field| field.name));
+        let near = self.near(&name.text, kind.fields.iter().map(|field| field.name));
         self.report(f, names::unknown_field(place, &format!("`{}`", kind.name), &name.text, near))
     }
 
@@ -211,16 +231,15 @@ impl<'a> Checker<'a> {
     }
 
     /// `v[i]`: a component, the index clamped.
-    fn index(&mut self, f: &mut Frame<'a>, wire: Wire, index: &'a Expr, span: Span) -> Wire {
+    fn index(&mut self, f: &mut Frame<'a>, wire: Wire, base: Place, index: &'a Expr, span: Span) -> Wire {
         let place = self.place(f, span);
         let at = self.place(f, index.span);
         let index = self.expr(f, index);
         if let Wire::List(_) = wire {
             return self.report(f, unsupported::not_yet(place, "constant tables"));
         }
-        let vector = self.value(f, &wire, place);
+        let Some(vector) = self.value(f, &wire, base) else { return Wire::Unknown };
         let Some(index) = self.coerce_value(f, &index, Scalar::Int, 1, at) else { return Wire::Unknown };
-        let Some(vector) = vector else { return Wire::Unknown };
         f.builder.set_place(place);
         let width = f.builder.ty(vector).width();
         if let Some(known) = f.builder.as_constant(index) {
@@ -254,7 +273,7 @@ impl<'a> Checker<'a> {
                 (UnaryOperator::Not, Type::Vector(Scalar::Bool, 1)) => NOT,
                 (operator, ty) => {
                     let wanted = if *operator == UnaryOperator::Not { "bool" } else { "float" };
-                    return self.report(f, errors::mismatch(place, wanted, &types::name(ty)));
+                    return self.report(f, errors::mismatch(place, None, wanted, &types::name(ty)));
                 }
             };
             value = f.builder.builtin(intrinsic, &[value]);
@@ -400,9 +419,20 @@ impl<'a> Checker<'a> {
 
     /// Arms widen to a common type.
     fn common_type(&mut self, f: &mut Frame<'a>, values: Vec<Value>, arms: &[(Wire, Place)]) -> Option<Vec<Value>> {
-        let all = || values.iter().map(|value| f.builder.ty(*value));
-        let scalar = if all().any(Type::is_float) { Scalar::Float } else { all().next()?.scalar()? };
-        let width = all().map(Type::width).max()?;
+        let types: Vec<Type> = values.iter().map(|value| f.builder.ty(*value)).collect();
+        let float = types.iter().any(|ty| ty.is_float());
+        let scalar = if float { Scalar::Float } else { types.first()?.scalar()? };
+        let width = types.iter().map(|ty| ty.width()).max()?;
+        let wanted = Type::Vector(scalar, width);
+        let fits = |ty: &Type| {
+            ty.scalar().is_some_and(|found| types::widens(found, scalar)) && (ty.width() == 1 || ty.width() == width)
+        };
+        if let Some(odd) = types.iter().position(|ty| !fits(ty)) {
+            let like = types.iter().position(fits).unwrap_or(0);
+            let (odd_name, like_name) = (types::name(types[odd]), types::name(types.get(like).copied().unwrap_or(wanted)));
+            self.report(f, errors::arms_differ(arms[odd].1, &like_name, &odd_name, arms[like].1));
+            return None;
+        }
         let mut common = Vec::new();
         for (value, (_, place)) in values.into_iter().zip(arms) {
             common.push(self.coerce_value(f, &Wire::Value(value), scalar, width, *place)?);
@@ -416,15 +446,4 @@ fn end_of(link: &Postfix) -> Span {
         Postfix::Field(name) => name.span,
         Postfix::Method(_, span) | Postfix::Index(_, span) => *span,
     }
-}
-
-/// An sRGB colour as people write it, linear and premultiplied.
-fn color([r, g, b, a]: [u8; 4]) -> Constant {
-    let alpha = f32::from(a) / 255.0;
-    let linear = |channel: u8| {
-        let c = f32::from(channel) / 255.0;
-        let linear = if c <= 0.040_45 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) };
-        linear * alpha
-    };
-    Constant::floats(&[linear(r), linear(g), linear(b), alpha])
 }

@@ -2,12 +2,12 @@
 
 use super::order::{self, Free};
 use super::wire::Wire;
-use super::{Checker, Frame};
-use crate::diagnostic::{limits, names, unsupported};
+use super::{Checker, Frame, types};
+use crate::diagnostic::{limits, names, types as errors, unsupported};
 use crate::graph::{Constant, Scalar, Value};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Body, Fold, Pattern, Span, Statement};
+use texgraph_grammar::syntax::{Fold, Name, Pattern, Span, Statement};
 
 /// Steps that are written out at most.
 const MAX_STEPS: i64 = 256;
@@ -26,7 +26,7 @@ impl<'a> Checker<'a> {
         if last - first > MAX_STEPS && fold.condition.is_none() {
             return self.report(f, limits::too_many_steps(place, last - first));
         }
-        let Some(order) = self.fold_order(f, &fold.body) else { return Wire::Unknown };
+        let Some(order) = self.fold_order(f, fold) else { return Wire::Unknown };
         for (taken, step) in (first..last).enumerate() {
             match self.goes_on(f, fold, &accumulators) {
                 None => return Wire::Unknown,
@@ -93,7 +93,10 @@ impl<'a> Checker<'a> {
         known.map(|known| known.bool(0))
     }
 
-    fn fold_order(&mut self, f: &mut Frame<'a>, body: &'a Body) -> Option<Vec<&'a Statement>> {
+    /// The statements in an order that works; None when there is none, which is reported.
+    fn fold_order(&mut self, f: &mut Frame<'a>, fold: &'a Fold) -> Option<Vec<&'a Statement>> {
+        let body = &fold.body;
+        self.fold_names(f, fold);
         let mut binder: FxHashMap<&str, usize> = FxHashMap::default();
         let lets = body.statements.iter().enumerate().filter(|(_, s)| matches!(s, Statement::Let { .. }));
         for (i, statement) in lets {
@@ -105,16 +108,44 @@ impl<'a> Checker<'a> {
             .iter()
             .map(|s| Free::of(order::value_of(s)).values.iter().filter_map(|name| binder.get(name).copied()).collect())
             .collect();
-        match order::sort(&needs) {
-            Ok(order) => Some(order.into_iter().map(|i| &body.statements[i]).collect()),
-            Err(ring) => {
-                let names: Vec<&str> =
-                    ring.iter().filter_map(|i| order::names_of(&body.statements[*i]).first().copied()).collect();
-                let span = ring.first().map_or(body.span, |i| order::value_of(&body.statements[*i]).span);
-                let place = self.place(f, span);
-                self.report(f, names::cycle(place, &names));
-                None
+        let (order, rings) = order::sort(&needs);
+        for ring in &rings {
+            let names: Vec<&str> =
+                ring.iter().filter_map(|i| order::names_of(&body.statements[*i]).first().copied()).collect();
+            let span = ring.first().map_or(body.span, |i| order::value_of(&body.statements[*i]).span);
+            let place = self.place(f, span);
+            self.report(f, names::cycle(place, &names));
+        }
+        rings.is_empty().then(|| order.into_iter().map(|i| &body.statements[i]).collect())
+    }
+
+    /// Each name of a head and its body is bound once, and each accumulator assigned once.
+    fn fold_names(&mut self, f: &mut Frame<'a>, fold: &'a Fold) {
+        let mut bound: Vec<&'a Name> = fold.accumulators.iter().map(|(name, _)| name).collect();
+        bound.push(&fold.variable);
+        let mut assigned = Vec::new();
+        for statement in &fold.body.statements {
+            match statement {
+                Statement::Let { pattern: Pattern::Name(name), .. } => bound.push(name),
+                Statement::Let { pattern: Pattern::Record(names, _), .. } => bound.extend(names),
+                Statement::Assign { name, .. } => assigned.push(name),
             }
+        }
+        for name in &assigned {
+            self.accumulates(f, fold, name);
+        }
+        self.distinct(f, bound.into_iter());
+        self.distinct(f, assigned.into_iter());
+    }
+
+    /// Reports an assignment to something that is no accumulator.
+    fn accumulates(&mut self, f: &mut Frame<'a>, fold: &Fold, name: &Name) {
+        let known = || fold.accumulators.iter().map(|(known, _)| known.text.as_str());
+        if !known().any(|known| known == name.text) {
+            let (at, near) = (self.place(f, name.span), self.near(&name.text, known()));
+            self.report(f, names::no_such_accumulator(at, &name.text, near));
+            // Reading it is the same slip.
+            f.unknown.insert(&name.text);
         }
     }
 
@@ -144,7 +175,7 @@ impl<'a> Checker<'a> {
                 }
                 Statement::Assign { name, value } => {
                     let place = self.place(f, value.span);
-                    fine &= self.advance(f, &mut next, name, &wire, place);
+                    fine &= self.advance(f, fold, &mut next, name, &wire, place);
                 }
             }
         }
@@ -156,19 +187,26 @@ impl<'a> Checker<'a> {
     fn advance(
         &mut self,
         f: &mut Frame<'a>,
+        fold: &Fold,
         next: &mut [(&'a str, Value)],
-        name: &texgraph_grammar::syntax::Name,
+        name: &Name,
         wire: &Wire,
         place: crate::diagnostic::Place,
     ) -> bool {
-        let Some((_, slot)) = next.iter_mut().find(|(known, _)| *known == name.text) else {
-            let at = self.place(f, name.span);
-            self.report(f, names::no_such_output(at, "fold", &name.text, None));
-            return false;
-        };
+        let Some((_, slot)) = next.iter_mut().find(|(known, _)| *known == name.text) else { return false };
         let ty = f.builder.ty(*slot);
         let Some(scalar) = ty.scalar() else { return false };
-        match self.coerce_value(f, wire, scalar, ty.width(), place) {
+        let Some(value) = self.value(f, wire, place) else { return false };
+        let found = f.builder.ty(value);
+        let fits = found.scalar().is_some_and(|from| types::widens(from, scalar));
+        if !fits || (found.width() != 1 && found.width() != ty.width()) {
+            let start = fold.accumulators.iter().find(|(known, _)| known.text == name.text);
+            let start = self.place(f, start.map_or(name.span, |(_, start)| start.span));
+            let (wanted, found) = (types::name(ty), types::name(found));
+            self.report(f, errors::accumulator(place, &name.text, &wanted, &found, start));
+            return false;
+        }
+        match self.coerce_value(f, &Wire::Value(value), scalar, ty.width(), place) {
             Some(value) => *slot = value,
             None => return false,
         }

@@ -7,7 +7,7 @@ use crate::diagnostic::{Place, imports, names, rates, types as type_errors};
 use crate::graph::{Builder, Constant, Param, ParamId, Scalar, Type};
 use crate::library::Callable;
 use crate::module::Module;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use texgraph_grammar::syntax::{Expr, Item, ItemKind, Name, Node, Range, Span};
 
 /// A value that a file declares.
@@ -36,8 +36,13 @@ pub fn node_of(item: &Item) -> Option<&Node> {
     }
 }
 
-/// The nodes and textures of a file by name.
-pub fn callables(index: usize, module: &Module) -> FxHashMap<&str, Vec<Callable>> {
+/// The nodes and textures of each of a user's files by name; the library has its own index.
+pub fn all_callables(modules: &[Module], library: usize) -> Vec<FxHashMap<&str, Vec<Callable>>> {
+    let modules = modules.iter().enumerate();
+    modules.map(|(i, module)| if i < library { FxHashMap::default() } else { callables(i, module) }).collect()
+}
+
+fn callables(index: usize, module: &Module) -> FxHashMap<&str, Vec<Callable>> {
     let mut named: FxHashMap<&str, Vec<Callable>> = FxHashMap::default();
     for (item, declared) in module.tree.items.iter().enumerate() {
         if let Some(node) = node_of(declared) {
@@ -78,9 +83,11 @@ impl<'a> Checker<'a> {
     /// Evaluates the `let`s and params of every file.
     pub fn declare(&mut self) {
         for module in 0..self.modules.len() {
-            self.check_items(module);
             let mut f = Frame::empty();
             f.module = module;
+            if module >= self.library.modules().len() {
+                f.repeated = self.check_items(module);
+            }
             f.builder = Builder::new(self.modules[module].path.clone());
             for item in &self.modules[module].tree.items {
                 match &item.kind {
@@ -93,21 +100,26 @@ impl<'a> Checker<'a> {
                     _ => {}
                 }
             }
-            self.sort(&mut f);
-            self.run(f);
+            if !f.steps.is_empty() {
+                self.sort(&mut f);
+                self.run(f);
+            }
         }
     }
 
-    /// Names declared twice: in the file, by two imports, or as two aliases.
-    fn check_items(&mut self, module: usize) {
+    /// Names declared twice: in the file (where is returned), by two imports, or as two aliases.
+    fn check_items(&mut self, module: usize) -> FxHashSet<u32> {
         let m = &self.modules[module];
         let place = |span: Span| Place { file: m.file, span };
         let mut seen: FxHashMap<(&str, &str), &Name> = FxHashMap::default();
+        let mut repeated = FxHashSet::default();
         for item in &m.tree.items {
             let Some(name) = name_of(item) else { continue };
-            if let Some(first) = seen.insert((&name.text, overload_of(item)), name) {
+            let first = *seen.entry((&name.text, overload_of(item))).or_insert(name);
+            if first.span != name.span {
                 let diagnostic = names::bound_twice(place(name.span), &name.text, place(first.span));
                 self.diagnostics.push(diagnostic);
+                repeated.insert(name.span.start);
             }
         }
         let mut aliases: FxHashMap<&str, ()> = FxHashMap::default();
@@ -117,6 +129,7 @@ impl<'a> Checker<'a> {
             }
         }
         self.check_joined(module);
+        repeated
     }
 
     /// Items of unnamed imports join the file's: two of one name clash, at the later `use`.
@@ -183,11 +196,18 @@ impl<'a> Checker<'a> {
             }
             other => {
                 let what = types::describe(other, |v| f.builder.ty(v));
-                self.report(f, type_errors::not_a_value(place, &format!("a {what}")));
+                self.report(f, type_errors::not_a_value(place, &what));
                 Global::Unknown
             }
         };
-        self.globals[f.module].insert(name.text.clone(), global);
+        self.declare_value(f, name, global);
+    }
+
+    /// The first declaration of a name holds.
+    fn declare_value(&mut self, f: &mut Frame<'a>, name: &'a Name, global: Global) {
+        if !f.repeated.contains(&name.span.start) {
+            self.globals[f.module].insert(name.text.clone(), global);
+        }
         let wire = self.global_wire(f, global);
         self.bind(f, name, wire);
     }
@@ -210,9 +230,7 @@ impl<'a> Checker<'a> {
             }
             None => Global::Unknown,
         };
-        self.globals[f.module].insert(name.text.clone(), global);
-        let wire = self.global_wire(f, global);
-        self.bind(f, name, wire);
+        self.declare_value(f, name, global);
     }
 
     #[expect(clippy::too_many_arguments, reason = "the parts of one declaration")]
@@ -239,16 +257,18 @@ impl<'a> Checker<'a> {
                 return None;
             }
         };
-        let value = self.known(f, name, &wire, scalar, width, place)?;
+        let value = self.known(f, name, &wire, scalar, width, place);
+        let written = range.map_or(place, |range| self.place(f, range.span));
         let range = match range {
             Some(range) => Some(self.range(f, name, range, scalar, width)?),
             None => None,
         };
+        let value = value?;
         if let Some((low, high)) = range
             && !within(&value, &low, &high)
         {
-            let all = self.place(f, default.span);
-            self.report(f, rates::default_outside_range(all, &name.text, all));
+            let at = self.place(f, default.span);
+            self.report(f, rates::default_outside_range(at, &name.text, written));
             return None;
         }
         Some(Param {
@@ -296,7 +316,7 @@ impl<'a> Checker<'a> {
         width: u8,
         place: Place,
     ) -> Option<Constant> {
-        let value = self.coerce_value(f, wire, scalar, width, place)?;
+        let value = self.coerce_named(f, wire, (scalar, width), place, Some(&name.text))?;
         let constant = f.builder.as_constant(value);
         if constant.is_none() {
             self.report(f, rates::param_not_constant(place, &name.text));

@@ -9,10 +9,12 @@
 mod arguments;
 mod call;
 mod constructor;
+mod default;
 mod expr;
 mod fold;
 mod globals;
 mod order;
+mod plan;
 mod texture;
 mod types;
 mod wire;
@@ -27,7 +29,7 @@ use crate::resource::{FieldKind, KINDS, Resource};
 use globals::Global;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Postfix, Span, Statement};
+use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Postfix, Span};
 use types::{Declared, Dims};
 use wire::{ArgumentKey, Key, ResourceWire, Wire};
 
@@ -74,6 +76,7 @@ enum Target<'a> {
     Output(&'a Name),
     Global(&'a Name, &'a str),
     Param(&'a texgraph_grammar::syntax::Item),
+    Default(&'a Input),
 }
 
 /// A function in the making.
@@ -90,6 +93,12 @@ pub struct Frame<'a> {
     next: usize,
     /// The names that the steps bind.
     bound: FxHashSet<&'a str>,
+    /// Where names stand that were bound before: the first binding holds.
+    repeated: FxHashSet<u32>,
+    /// Outputs whose declared type is wrong: what they get is not looked at.
+    doubtful: FxHashSet<&'a str>,
+    /// Names that nobody declared, reported once.
+    unknown: plan::Reported,
     /// Nodes that the current step waits for, with the calls.
     waiting: Vec<(Key, Place)>,
     failed: bool,
@@ -111,7 +120,7 @@ impl<'a> Checker<'a> {
             library,
             modules,
             globals: vec![FxHashMap::default(); modules.len()],
-            callables: modules.iter().enumerate().map(|(i, module)| globals::callables(i, module)).collect(),
+            callables: globals::all_callables(modules, library.modules().len()),
             aliases: globals::aliases(modules, library.modules().len()),
             made: FxHashMap::default(),
             interned: FxHashMap::default(),
@@ -226,118 +235,23 @@ impl<'a> Checker<'a> {
             let wire = input_wire(&mut f.builder, input, argument);
             f.scopes[0].insert(&input.name.text, wire);
         }
+        self.doubt(&mut f, node, key.item);
         f.key = Some(key);
         self.plan_node(&mut f, node);
         f
-    }
-
-    /// The steps of a node, and what is wrong with their names.
-    fn plan_node(&mut self, f: &mut Frame<'a>, node: &'a Node) {
-        f.builder.set_inline(node.body.statements.len() == 1 && node.outputs.len() == 1);
-        self.distinct(f, node.inputs.iter().map(|i| &i.name).chain(node.outputs.iter().map(|o| &o.name)));
-        let mut names_bound: Vec<&'a Name> = node.inputs.iter().map(|i| &i.name).collect();
-        for statement in &node.body.statements {
-            match statement {
-                Statement::Let { pattern, value, .. } => {
-                    match pattern {
-                        Pattern::Name(name) => names_bound.push(name),
-                        Pattern::Record(names, _) => names_bound.extend(names),
-                    }
-                    f.steps.push(Step { target: Target::Let(pattern), value });
-                }
-                Statement::Assign { name, value } => {
-                    self.assign(f, node, name);
-                    names_bound.push(name);
-                    f.steps.push(Step { target: Target::Output(name), value });
-                }
-            }
-        }
-        self.distinct(f, names_bound.into_iter());
-        self.outputs_assigned(f, node);
-        self.sort(f);
-    }
-
-    fn assign(&mut self, f: &mut Frame<'a>, node: &'a Node, name: &Name) {
-        if !node.outputs.iter().any(|output| output.name.text == name.text) {
-            let near = names::nearest(&name.text, node.outputs.iter().map(|o| o.name.text.as_str()));
-            let place = self.place(f, name.span);
-            self.report(f, names::no_such_output(place, &node.name.text, &name.text, near));
-        }
-    }
-
-    fn outputs_assigned(&mut self, f: &mut Frame<'a>, node: &'a Node) {
-        let misspelt = node.body.statements.iter().any(|s| match s {
-            Statement::Assign { name, .. } => !node.outputs.iter().any(|o| o.name.text == name.text),
-            Statement::Let { .. } => false,
-        });
-        for output in &node.outputs {
-            let assigned = node
-                .body
-                .statements
-                .iter()
-                .any(|s| matches!(s, Statement::Assign { name, .. } if name.text == output.name.text));
-            // A misspelt assignment is reported already: one slip, one error.
-            if !assigned && !misspelt {
-                let place = self.place(f, output.name.span);
-                self.report(f, names::output_missing(place, &node.name.text, &output.name.text));
-            }
-        }
-    }
-
-    /// Reports each name that stands twice.
-    fn distinct(&mut self, f: &mut Frame<'a>, bound: impl Iterator<Item = &'a Name>) {
-        let mut seen: FxHashMap<&str, &Name> = FxHashMap::default();
-        for name in bound {
-            if let Some(first) = seen.insert(&name.text, name) {
-                let (place, first) = (self.place(f, name.span), self.place(f, first.span));
-                self.report(f, names::bound_twice(place, &name.text, first));
-            }
-        }
-    }
-
-    /// Puts the steps into an order that works.
-    fn sort(&mut self, f: &mut Frame<'a>) {
-        let mut binder: FxHashMap<&str, usize> = FxHashMap::default();
-        for (i, step) in f.steps.iter().enumerate() {
-            step.names().into_iter().for_each(|name| {
-                binder.insert(name, i);
-            });
-        }
-        f.bound = binder.keys().copied().collect();
-        let reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
-        let needs: Vec<Vec<usize>> = f
-            .steps
-            .iter()
-            .map(|step| {
-                let free = order::Free::of(step.value);
-                let through = reach.as_ref().map(|reach| reach.values(&free.calls)).unwrap_or_default();
-                free.values.iter().chain(&through).filter_map(|name| binder.get(name).copied()).collect()
-            })
-            .collect();
-        match order::sort(&needs) {
-            Ok(order) => f.order = order,
-            Err(ring) => {
-                let first = ring.iter().copied().min().unwrap_or(0);
-                let start = ring.iter().position(|i| *i == first).unwrap_or(0);
-                let ring: Vec<&Step> = ring[start..].iter().chain(&ring[..start]).map(|i| &f.steps[*i]).collect();
-                let names: Vec<&str> = ring.iter().filter_map(|step| step.names().first().copied()).collect();
-                let place = self.place(f, ring.first().map_or(Span::default(), |step| step.span()));
-                let diagnostic = names::cycle(place, &names);
-                self.report(f, diagnostic);
-            }
-        }
     }
 
     /// Runs steps until the function is done (true) or one has to wait (false).
     fn step(&mut self, f: &mut Frame<'a>) -> bool {
         while let Some(step) = f.order.get(f.next) {
             let Step { target, value } = f.steps[*step];
-            let (mark, failed) = (self.diagnostics.len(), f.failed);
+            let (mark, failed, unknown) = (self.diagnostics.len(), f.failed, f.unknown.len());
             f.current = target.name().to_owned();
             let wire = self.expr(f, value);
             if !f.waiting.is_empty() {
                 // What was said while waiting may be a consequence of it; the step runs again.
                 self.diagnostics.truncate(mark);
+                f.unknown.truncate(unknown);
                 f.failed = failed;
                 return false;
             }
@@ -345,6 +259,7 @@ impl<'a> Checker<'a> {
             if !f.waiting.is_empty() {
                 // The ends of a param's range may call nodes too.
                 self.diagnostics.truncate(mark);
+                f.unknown.truncate(unknown);
                 f.failed = failed;
                 return false;
             }
@@ -371,6 +286,7 @@ impl<'a> Checker<'a> {
             Target::Output(name) => self.set_output(f, name, wire, place),
             Target::Global(name, doc) => self.set_global(f, name, doc, wire, place),
             Target::Param(item) => self.set_param(f, item, wire, place),
+            Target::Default(input) => self.check_default(f, input, wire, place),
         }
     }
 
@@ -380,12 +296,15 @@ impl<'a> Checker<'a> {
         }
         // A bare word that reaches a wire is a name that nobody declared.
         let wire = if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
-        if let Some(scope) = f.scopes.last_mut() {
+        if let Some(scope) = f.scopes.last_mut()
+            && !f.repeated.contains(&name.span.start)
+        {
             scope.insert(&name.text, wire);
         }
     }
 
     fn take_apart(&mut self, f: &mut Frame<'a>, names: &'a [Name], wire: Wire, place: Place) {
+        let wire = if let Wire::Word(word, at) = wire { self.unknown_value(f, &word, at) } else { wire };
         let outputs = match &wire {
             Wire::Record(outputs) => Rc::clone(outputs),
             Wire::Unknown => Rc::new(Vec::new()),
@@ -395,8 +314,10 @@ impl<'a> Checker<'a> {
             }
         };
         if matches!(wire, Wire::Record(_)) && outputs.len() != names.len() {
-            let known: Vec<String> = outputs.iter().map(|(name, _)| format!("`{name}`")).collect();
+            let known: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
             self.report(f, type_errors::destructuring(place, names.len(), &known));
+            // The outputs that got no name may be read by their own: that is the same slip.
+            known.iter().for_each(|name| f.unknown.insert(name));
         }
         for (i, name) in names.iter().enumerate() {
             let wire = outputs.get(i).map_or(Wire::Unknown, |(_, wire)| wire.clone());
@@ -406,9 +327,13 @@ impl<'a> Checker<'a> {
 
     fn set_output(&mut self, f: &mut Frame<'a>, name: &'a Name, wire: Wire, place: Place) {
         let declared = f.node.and_then(|node| node.outputs.iter().find(|o| o.name.text == name.text));
+        if f.doubtful.contains(name.text.as_str()) {
+            f.failed = true;
+            return self.bind(f, name, Wire::Unknown);
+        }
         let wire = match declared.map(|output| types::resolve(&output.ty, &f.dims, self.modules[f.module].file)) {
             Some(Ok(Declared::Vector(scalar, width))) => {
-                self.coerce_value(f, &wire, scalar, width, place).map_or(Wire::Unknown, Wire::Value)
+                self.coerce_named(f, &wire, (scalar, width), place, Some(&name.text)).map_or(Wire::Unknown, Wire::Value)
             }
             Some(Ok(_)) => {
                 let ty = declared.map(|o| types::show(&o.ty)).unwrap_or_default();
@@ -489,6 +414,9 @@ impl<'a> Frame<'a> {
             steps: Vec::new(),
             order: Vec::new(),
             bound: FxHashSet::default(),
+            repeated: FxHashSet::default(),
+            doubtful: FxHashSet::default(),
+            unknown: plan::Reported::default(),
             next: 0,
             waiting: Vec::new(),
             failed: false,
@@ -505,7 +433,7 @@ impl<'a> Step<'a> {
         match self.target {
             Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => vec![&name.text],
             Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
-            Target::Param(_) => vec![self.target.name()],
+            Target::Param(_) | Target::Default(_) => vec![self.target.name()],
         }
     }
 
@@ -519,6 +447,7 @@ impl<'a> Target<'a> {
         match *self {
             Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => &name.text,
             Target::Let(Pattern::Record(names, _)) => names.first().map_or("", |name| &name.text),
+            Target::Default(input) => &input.name.text,
             Target::Param(item) => match &item.kind {
                 ItemKind::Param { name, .. } => &name.text,
                 _ => "",

@@ -1,13 +1,15 @@
 //! Which wire needs which: free names of expressions, and statements in an order that works.
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use texgraph_grammar::syntax::{Body, Expr, ExprKind, Fold, Node, Pattern, Postfix, Statement};
+use texgraph_grammar::syntax::{Body, Expr, ExprKind, Fold, Node, Pattern, Postfix, Span, Statement};
 
 /// The names that an expression takes from outside.
 #[derive(Default, Debug)]
 pub struct Free<'a> {
     /// Read as values, in source order.
     pub values: Vec<&'a str>,
+    /// Where each of them is read.
+    pub places: Vec<Span>,
     /// Called.
     pub calls: Vec<&'a str>,
     /// Names bound around the place of the walk, with how many times.
@@ -31,9 +33,10 @@ impl<'a> Free<'a> {
         free
     }
 
-    fn name(&mut self, name: &'a str) {
+    fn name(&mut self, name: &'a str, place: Span) {
         if self.bound.get(name).is_none_or(|count| *count == 0) {
             self.values.push(name);
+            self.places.push(place);
         }
     }
 
@@ -71,7 +74,7 @@ impl<'a> Free<'a> {
     /// Recursion is bounded by the nesting of the text.
     fn expr(&mut self, expr: &'a Expr) {
         match &expr.kind {
-            ExprKind::Name(name) => self.name(name),
+            ExprKind::Name(name) => self.name(name, expr.span),
             ExprKind::Paren(inner) => self.expr(inner),
             ExprKind::Call(call) => {
                 self.calls.push(&call.name.text);
@@ -128,9 +131,10 @@ pub fn value_of(statement: &Statement) -> &Expr {
     }
 }
 
-/// Steps so that each comes after those it needs, in source order where that is free; or the ring
-/// of steps that need each other.
-pub fn sort(needs: &[Vec<usize>]) -> Result<Vec<usize>, Vec<usize>> {
+/// Steps so that each comes after those it needs, in source order where that is free; and the
+/// rings of steps that need each other, no step in two of them. A step of a ring comes before one
+/// that it needs.
+pub fn sort(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
     #[derive(Clone, Copy, PartialEq)]
     enum State {
         New,
@@ -139,6 +143,8 @@ pub fn sort(needs: &[Vec<usize>]) -> Result<Vec<usize>, Vec<usize>> {
     }
     let mut state = vec![State::New; needs.len()];
     let mut order = Vec::with_capacity(needs.len());
+    let mut rings = Vec::new();
+    let mut in_ring = vec![false; needs.len()];
     for root in 0..needs.len() {
         let mut stack = if state[root] == State::New { vec![(root, 0)] } else { continue };
         state[root] = State::Open;
@@ -157,14 +163,18 @@ pub fn sort(needs: &[Vec<usize>]) -> Result<Vec<usize>, Vec<usize>> {
                     stack.push((needed, 0));
                 }
                 State::Open => {
-                    let open: Vec<usize> = stack.iter().map(|(step, _)| *step).collect();
-                    let start = open.iter().position(|step| *step == needed).unwrap_or(0);
-                    return Err(open[start..].to_vec());
+                    let start = stack.iter().position(|(step, _)| *step == needed).unwrap_or(0);
+                    let ring: Vec<usize> = stack[start..].iter().map(|(step, _)| *step).collect();
+                    // One slip often closes several rings.
+                    if ring.iter().all(|step| !in_ring[*step]) {
+                        ring.iter().for_each(|step| in_ring[*step] = true);
+                        rings.push(ring);
+                    }
                 }
             }
         }
     }
-    Ok(order)
+    (order, rings)
 }
 
 /// What calls of a file's nodes read of the file, through any number of further calls.

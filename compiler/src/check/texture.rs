@@ -2,8 +2,8 @@
 
 use super::constructor::placeholder;
 use super::types::{self, Declared};
-use super::wire::{ArgumentKey, Key};
-use super::{Checker, Outcome};
+use super::wire::{ArgumentKey, Key, Wire};
+use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, limits, names, types as errors, unsupported};
 use crate::graph::{Scalar, Type};
 use crate::module::Module;
@@ -54,7 +54,8 @@ impl<'a> Checker<'a> {
             Some(name) if known.contains(&name) => name,
             Some(name) => {
                 let list = known.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
-                self.diagnostics.push(limits::no_such_texture(all, name, &list));
+                let near = names::nearest(name, known.iter().copied());
+                self.diagnostics.push(limits::no_such_texture(all, name, &list, near));
                 return None;
             }
             None => match known.first() {
@@ -71,6 +72,13 @@ impl<'a> Checker<'a> {
         self.entry(main, item)
     }
 
+    /// The name of an item in its head.
+    pub fn head_of(&self, key: &Key) -> Place {
+        let module = &self.modules[key.module];
+        let name = module.tree.items.get(key.item).and_then(super::globals::name_of);
+        Place { file: module.file, span: name.map(|name| name.span).unwrap_or_default() }
+    }
+
     /// Makes every texture of the main file, then every node that none of them calls.
     pub fn everything(&mut self) {
         let first = self.library.modules().len();
@@ -85,7 +93,10 @@ impl<'a> Checker<'a> {
                 if let Some(node) = super::globals::node_of(declared)
                     && !self.made.keys().any(|key| (key.module, key.item) == (module, item))
                 {
-                    self.alone(module, item, node);
+                    self.alone(module, item, node, true);
+                }
+                if let Some(node) = super::globals::node_of(declared) {
+                    self.defaults(module, node);
                 }
             }
         }
@@ -95,47 +106,81 @@ impl<'a> Checker<'a> {
     fn entry(&mut self, module: usize, item: usize) -> Option<Key> {
         let node = self.node(module, item)?;
         let fine = self.check_signature(module, item, node);
-        let key = self.open_key(module, item, node, fine)?;
-        let frame = self.frame(node, key.clone(), None);
-        self.run(frame);
+        let key = self.alone(module, item, node, fine)?;
         (fine && matches!(self.made.get(&key), Some(Outcome::Made(_)))).then_some(key)
     }
 
-    /// Makes a node that nobody calls, to find what is wrong in it: dimensions are 2, resources
-    /// are stood in for.
-    fn alone(&mut self, module: usize, item: usize, node: &'a Node) {
-        if let Some(key) = self.open_key(module, item, node, true) {
-            let frame = self.frame(node, key, None);
-            self.run(frame);
+    /// Makes a node as if nobody called it, to find what is wrong in it: dimensions are 2,
+    /// resources are stood in for. None when its head is wrong.
+    fn alone(&mut self, module: usize, item: usize, node: &'a Node, report: bool) -> Option<Key> {
+        let before = self.diagnostics.len();
+        let (key, fine) = self.open_key(module, item, node);
+        if !report {
+            self.diagnostics.truncate(before);
         }
+        let frame = self.frame(node, key.clone(), None);
+        self.run(frame);
+        fine.then_some(key)
     }
 
-    /// The key of a node with every input open; None when an input's type is wrong. `report` tells
-    /// whether to say so.
-    fn open_key(&mut self, module: usize, item: usize, node: &Node, report: bool) -> Option<Key> {
+    /// Makes names whose declaration is wrong stand for anything, so that one slip is one error.
+    pub(super) fn doubt(&self, f: &mut Frame<'a>, node: &'a Node, item: usize) {
+        let module: &'a Module = &self.modules[f.module];
+        for input in &node.inputs {
+            if !matches!(
+                types::resolve(&input.ty, &f.dims, module.file),
+                Ok(Declared::Vector(..) | Declared::Resource(_) | Declared::Choice(_))
+            ) {
+                f.failed = true;
+                f.scopes[0].insert(&input.name.text, Wire::Unknown);
+                // The same undeclared dimension in an output is the same slip.
+                let dimension = types::dimension_variable(&input.ty);
+                let same = |ty| dimension.is_some() && types::dimension_variable(ty) == dimension;
+                let outputs = node.outputs.iter().filter(|output| same(&output.ty));
+                f.doubtful.extend(outputs.map(|output| output.name.text.as_str()));
+            }
+        }
+        if !matches!(module.tree.items.get(item).map(|item| &item.kind), Some(ItemKind::Texture { .. })) {
+            return;
+        }
+        for input in &node.inputs {
+            match INPUTS.iter().find(|(name, _)| *name == input.name.text) {
+                // Whatever input was meant is missing.
+                None => INPUTS.iter().for_each(|(name, _)| f.unknown.insert(name)),
+                Some((_, wanted)) if !is_one_of(&input.ty, wanted) => {
+                    f.scopes[0].insert(&input.name.text, Wire::Unknown);
+                }
+                Some(_) => {}
+            }
+        }
+        let wrong = node.outputs.iter().filter(|output| {
+            let known = OUTPUTS.iter().find(|(name, _)| *name == output.name.text);
+            known.is_some_and(|(_, wanted)| !is_one_of(&output.ty, wanted))
+        });
+        f.doubtful.extend(wrong.map(|output| output.name.text.as_str()));
+    }
+
+    /// The key of a node with every input open, and whether its types are right.
+    fn open_key(&mut self, module: usize, item: usize, node: &Node) -> (Key, bool) {
         let file = self.modules[module].file;
         let dims: types::Dims = node.dims.iter().map(|d| (d.text.clone(), 2)).collect();
-        let mut arguments = Vec::new();
-        for input in &node.inputs {
-            arguments.push(match types::resolve(&input.ty, &dims, file) {
-                Ok(Declared::Vector(scalar, width)) => ArgumentKey::Value(Type::Vector(scalar, width)),
-                Ok(Declared::Resource(kind)) => ArgumentKey::Resource(kind, placeholder(kind)),
-                Ok(Declared::Choice(words)) => ArgumentKey::Word(words.into_iter().next().unwrap_or_default()),
-                Ok(_) => {
-                    let place = Place { file, span: input.ty.span };
-                    let ty = types::show(&input.ty);
-                    self.diagnostics.push(errors::type_not_allowed(place, &ty, "a node's input"));
-                    return None;
-                }
-                Err(diagnostic) => {
-                    if report {
-                        self.diagnostics.push(diagnostic);
-                    }
-                    return None;
-                }
-            });
-        }
-        Some(Key { module, item, dims: dims.iter().map(|(_, width)| *width).collect(), arguments })
+        let before = self.diagnostics.len();
+        let arguments = node.inputs.iter().map(|input| match types::resolve(&input.ty, &dims, file) {
+            Ok(Declared::Vector(scalar, width)) => ArgumentKey::Value(Type::Vector(scalar, width)),
+            Ok(Declared::Resource(kind)) => ArgumentKey::Resource(kind, placeholder(kind)),
+            Ok(Declared::Choice(words)) => ArgumentKey::Word(words.into_iter().next().unwrap_or_default()),
+            Ok(_) => {
+                let (place, ty) = (Place { file, span: input.ty.span }, types::show(&input.ty));
+                self.diagnostics.push(errors::type_not_allowed(place, &ty, "a node's input"));
+                ArgumentKey::None
+            }
+            Err(diagnostic) => {
+                self.diagnostics.push(diagnostic);
+                ArgumentKey::None
+            }
+        });
+        let key = Key { module, item, dims: dims.iter().map(|(_, width)| *width).collect(), arguments: arguments.collect() };
+        (key, self.diagnostics.len() == before)
     }
 
     fn check_signature(&mut self, module: usize, item: usize, node: &Node) -> bool {
@@ -175,9 +220,13 @@ impl<'a> Checker<'a> {
     }
 
     fn fixed_type(&mut self, name: &str, wanted: &[&str], ty: &texgraph_grammar::syntax::Type, file: u32) {
-        if !wanted.contains(&types::show(ty).as_str()) {
+        if !is_one_of(ty, wanted) {
             let place = Place { file, span: ty.span };
             self.diagnostics.push(errors::fixed_type(place, name, wanted.first().copied().unwrap_or_default()));
         }
     }
+}
+
+fn is_one_of(ty: &texgraph_grammar::syntax::Type, wanted: &[&str]) -> bool {
+    wanted.contains(&types::show(ty).as_str())
 }

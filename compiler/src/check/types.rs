@@ -66,13 +66,29 @@ pub fn scalar_of(ty: &syntax::Type) -> Option<Scalar> {
     }
 }
 
+/// The width of a vector type that has one of its own.
+pub fn fixed_width(ty: &syntax::Type) -> Option<u8> {
+    match &ty.kind {
+        TypeKind::Named { name, .. } => vector(&name.text)?.1,
+        _ => None,
+    }
+}
+
+/// The row of the table of kinds that a type names.
+pub fn kind_of(ty: &syntax::Type) -> Option<usize> {
+    match &ty.kind {
+        TypeKind::Named { name, .. } => KINDS.iter().position(|kind| kind.name == name.text),
+        _ => None,
+    }
+}
+
 /// A declared type under a binding of its dimension variables.
 pub fn resolve(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Diagnostic> {
     let place = Place { file, span: ty.span };
     match &ty.kind {
         TypeKind::Named { name, dim } => match vector(&name.text) {
             Some((scalar, Some(width))) if dim.is_none() => Ok(Declared::Vector(scalar, width)),
-            Some((scalar, None)) => Ok(Declared::Vector(scalar, width_of(dim.as_ref(), dims, place)?)),
+            Some((scalar, None)) => Ok(Declared::Vector(scalar, width_of(&name.text, dim.as_ref(), dims, place)?)),
             Some(_) => Err(types::unknown_type(place, &show(ty), Some(name.text.clone()))),
             None => resolve_other(&name.text, place),
         },
@@ -101,7 +117,7 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
 }
 
 /// The width that a generic type's `<n>` stands for.
-pub fn width_of(dim: Option<&Dim>, dims: &Dims, place: Place) -> Result<u8, Diagnostic> {
+pub fn width_of(generic: &str, dim: Option<&Dim>, dims: &Dims, place: Place) -> Result<u8, Diagnostic> {
     match dim {
         Some(Dim::Number(n, _)) if (1..=4).contains(n) => Ok(*n as u8),
         Some(Dim::Number(n, _)) => Err(types::bad_dimension(place, *n)),
@@ -109,7 +125,7 @@ pub fn width_of(dim: Option<&Dim>, dims: &Dims, place: Place) -> Result<u8, Diag
             Some((_, width)) => Ok(*width),
             None => Err(types::unknown_dimension(place, &name.text)),
         },
-        None => Err(types::unknown_dimension(place, "n")),
+        None => Err(types::missing_dimension(place, generic)),
     }
 }
 
@@ -145,15 +161,16 @@ pub fn widens(from: Scalar, to: Scalar) -> bool {
 
 /// What a wire is, in the user's words.
 pub fn describe(wire: &Wire, ty: impl Fn(crate::graph::Value) -> Type) -> String {
+    let kind = |name: &str| format!("`{name}`");
     match wire {
-        Wire::Value(value) => name(ty(*value)),
-        Wire::View(_) => "view".to_owned(),
-        Wire::Record(_) => "record".to_owned(),
-        Wire::Resource(resource) => KINDS[resource.kind].name.to_owned(),
-        Wire::Word(word, _) => word.clone(),
-        Wire::Text(_) => "text".to_owned(),
-        Wire::List(_) => "list".to_owned(),
-        Wire::None => "none".to_owned(),
+        Wire::Value(value) => kind(&name(ty(*value))),
+        Wire::View(_) => "the view of a resource".to_owned(),
+        Wire::Record(_) => "a record of several outputs".to_owned(),
+        Wire::Resource(resource) => kind(KINDS[resource.kind].name),
+        Wire::Word(word, _) => format!("the word `{word}`"),
+        Wire::Text(_) => "a string".to_owned(),
+        Wire::List(_) => "a list".to_owned(),
+        Wire::None => "`none`".to_owned(),
         Wire::Unknown => "unknown".to_owned(),
     }
 }

@@ -34,7 +34,7 @@ pub fn ragged_rows(place: Place) -> Diagnostic {
 
 /// An argument that is not a value of the kind wanted.
 pub fn wrong_argument(place: Place, input: &str, wanted: &str) -> Diagnostic {
-    Diagnostic::new("E0556", place, format!("`{input}` takes {wanted}"), format!("this is not {wanted}"))
+    Diagnostic::new("E0556", place, format!("`{input}` takes {wanted}"), "this does not fit")
 }
 
 /// A constructor's argument that is not known before the program runs.

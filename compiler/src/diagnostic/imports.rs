@@ -12,8 +12,14 @@ pub fn cannot_load(place: Place, path: &str, why: &str) -> Diagnostic {
 pub fn cycle(place: Place, paths: &[&str]) -> Diagnostic {
     let mut ring: Vec<String> = paths.iter().map(|path| format!("`{path}`")).collect();
     ring.extend(ring.first().cloned());
-    Diagnostic::new("E0602", place, format!("files import each other: {}", ring.join(" → ")), "this closes the ring")
-        .help("move what they share into a file of its own that both import")
+    let (message, help) = match paths {
+        [one] => (format!("`{one}` imports itself"), "a file sees its own items without an import"),
+        _ => {
+            let message = format!("files import each other: {}", ring.join(" → "));
+            (message, "move what they share into a file of its own that both import")
+        }
+    };
+    Diagnostic::new("E0602", place, message, "this closes the ring").help(help)
 }
 
 /// One name from two files.

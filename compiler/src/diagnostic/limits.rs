@@ -26,7 +26,8 @@ pub fn too_many_values(place: Place, name: &str) -> Diagnostic {
 
 /// A fold with more steps than this version writes out.
 pub fn too_many_steps(place: Place, steps: i64) -> Diagnostic {
-    Diagnostic::new("E0404", place, format!("a fold of {steps} steps: not supported yet"), "at most 256 constant steps")
+    Diagnostic::new("E0404", place, format!("a fold of {steps} steps is too long"), "at most 256 steps")
+        .help("this version of texgraph writes every step out: use fewer")
 }
 
 /// No texture to compile.
@@ -36,15 +37,17 @@ pub fn no_texture(place: Place) -> Diagnostic {
 }
 
 /// A texture asked for by a name that the file does not have.
-pub fn no_such_texture(place: Place, name: &str, known: &str) -> Diagnostic {
+pub fn no_such_texture(place: Place, name: &str, known: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0802", place, format!("the file has no texture `{name}`"), "in this file")
-        .help(format!("its textures are {known}"))
+        .help(if known.is_empty() { "it declares none".to_owned() } else { format!("its textures are {known}") })
+        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
 }
 
 /// An output asked for that the texture does not have.
-pub fn no_such_texture_output(place: Place, name: &str, known: &str) -> Diagnostic {
+pub fn no_such_texture_output(place: Place, name: &str, known: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0803", place, format!("the texture has no output `{name}`"), "its head")
         .help(format!("its outputs are {known}"))
+        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
 }
 
 /// A shader that naga refuses: our fault.

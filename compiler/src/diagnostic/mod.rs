@@ -48,6 +48,13 @@ impl Diagnostic {
         }
     }
 
+    /// With another reason than its sentence has.
+    #[must_use]
+    pub fn because(mut self, message: impl Into<String>) -> Diagnostic {
+        self.message = message.into();
+        self
+    }
+
     /// With a likely mend.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {

@@ -2,14 +2,55 @@
 
 use super::{Diagnostic, Place};
 
-/// The candidate that a misspelt name most likely means.
+/// The candidate that a misspelt name most likely means: one that differs only in case and
+/// underscores, or else in less than about a third of its letters.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    candidates
-        .into_iter()
-        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= 1 + name.len().min(candidate.len()) / 4)
+    let plain = |name: &str| name.replace('_', "").to_lowercase();
+    let distance = |candidate: &str| {
+        let same = plain(candidate) == plain(name) && !plain(name).is_empty();
+        if same { 0 } else { strsim::damerau_levenshtein(name, candidate) }
+    };
+    let others = candidates.into_iter().filter(|candidate| *candidate != name);
+    others
+        .map(|candidate| (distance(candidate), candidate))
+        .filter(|(distance, candidate)| {
+            let (shorter, longer) = (name.len().min(candidate.len()), name.len().max(candidate.len()));
+            *distance <= 1.max(shorter / 3) && *distance < longer
+        })
         .min()
         .map(|(_, candidate)| candidate.to_owned())
+}
+
+/// What functions of shading languages are here.
+const FOREIGN: &[(&str, &str)] = &[
+    ("atan", "`atan2(y, x)`"),
+    ("clamp01", "`clamp(x, 0.0, 1.0)`"),
+    ("color", "`vec4(r, g, b, a)`, or a literal such as `#a0c040`"),
+    ("dFdx", "`dx(v)`"),
+    ("dFdy", "`dy(v)`"),
+    ("ddx", "`dx(v)`"),
+    ("ddy", "`dy(v)`"),
+    ("fmod", "`x % y`"),
+    ("frac", "`fract(x)`"),
+    ("fwidth", "`footprint(v)`"),
+    ("inversesqrt", "`1.0 / sqrt(x)`"),
+    ("lerp", "`mix(a, b, t)`"),
+    ("mad", "`a * b + c`"),
+    ("mod", "`x % y`"),
+    ("mul", "`a * b`"),
+    ("rand", "`hash(i)`, of ints"),
+    ("random", "`hash(i)`, of ints"),
+    ("rsqrt", "`1.0 / sqrt(x)`"),
+    ("saturate", "`clamp(x, 0.0, 1.0)`"),
+    ("select", "`if c { a } else { b }`"),
+    ("tex2D", "`image.sample(uv)`"),
+    ("textureLod", "`image.sample(uv, lod: l)`"),
+    ("textureSample", "`image.sample(uv)`"),
+];
+
+fn foreign(name: &str) -> Option<String> {
+    let known = FOREIGN.iter().find(|(theirs, _)| *theirs == name);
+    known.map(|(_, ours)| format!("here it is written {ours}"))
 }
 
 fn did_you_mean(near: Option<String>) -> Option<String> {
@@ -22,10 +63,16 @@ pub fn unknown_value(place: Place, name: &str, near: Option<String>) -> Diagnost
         .maybe_help(did_you_mean(near))
 }
 
+/// An alias that is missing: a file is imported, but its items joined ours.
+pub fn missing_alias(place: Place, name: &str) -> Diagnostic {
+    unknown_value(place, name, None)
+        .help(format!("the items of that file are used without a prefix, or import it by name: `use \"…\" as {name}`"))
+}
+
 /// A node that nobody declared.
 pub fn unknown_callable(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0102", place, format!("there is no node `{name}`"), "no such node")
-        .maybe_help(did_you_mean(near))
+        .maybe_help(foreign(name).or_else(|| did_you_mean(near)))
 }
 
 /// A name bound again in one body or file.
@@ -39,7 +86,11 @@ pub fn bound_twice(place: Place, name: &str, first: Place) -> Diagnostic {
 pub fn cycle(place: Place, names: &[&str]) -> Diagnostic {
     let mut ring: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     ring.extend(ring.first().cloned());
-    Diagnostic::new("E0104", place, format!("wires run in a circle: {}", ring.join(" → ")), "this needs itself")
+    let message = match names {
+        [one] => format!("`{one}` needs itself"),
+        _ => format!("wires run in a circle: {}", ring.join(" → ")),
+    };
+    Diagnostic::new("E0104", place, message, "this closes the circle")
         .help("a graph has no feedback: compute one of them from something else")
 }
 
@@ -55,10 +106,23 @@ pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>
         .maybe_help(did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))))
 }
 
+/// An assignment in a fold to something that is no accumulator.
+pub fn no_such_accumulator(place: Place, name: &str, near: Option<String>) -> Diagnostic {
+    Diagnostic::new("E0106", place, format!("the fold has no accumulator `{name}`"), "not in its head")
+        .maybe_help(did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))))
+}
+
 /// An output without a value.
 pub fn output_missing(place: Place, node: &str, name: &str) -> Diagnostic {
     Diagnostic::new("E0107", place, format!("the output `{name}` of `{node}` gets no value"), "declared here")
         .help(format!("assign it in the body: `{name} = …`"))
+}
+
+/// An output without a value, because a `let` made a wire of its name.
+pub fn output_shadowed(place: Place, node: &str, name: &str, wire: Place) -> Diagnostic {
+    output_missing(place, node, name)
+        .related(wire, "this `let` makes a wire of its own")
+        .help(format!("an output is assigned without `let`: `{name} = …`"))
 }
 
 /// A node that calls itself, directly or through others.

@@ -27,6 +27,7 @@ pub fn param_not_constant(place: Place, name: &str) -> Diagnostic {
 pub fn default_outside_range(place: Place, name: &str, range: Place) -> Diagnostic {
     Diagnostic::new("E0304", place, format!("the default of `{name}` lies outside its range"), "the default")
         .related(range, "the range")
+        .help("change the one or the other")
 }
 
 /// A range that holds nothing.

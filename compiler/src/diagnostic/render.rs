@@ -18,22 +18,19 @@ pub fn human_colored(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
 }
 
 fn pages(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> String {
-    let config = Config { chars: Chars::box_drawing(), tab_width: 4, ..Config::default() };
     let files = Shown::new(sources);
-    let mut text = String::new();
-    for diagnostic in diagnostics {
-        let page = page(diagnostic, sources);
-        let emitted = if color {
-            emit_colored(&config, &files, &page)
-        } else {
-            term::emit_into_string(&config, &files, &page)
-        };
-        match emitted {
-            Ok(page) => text.push_str(&page),
-            Err(_) => text.push_str(&short(sources, std::slice::from_ref(diagnostic))),
-        }
-    }
-    text
+    diagnostics.iter().map(|diagnostic| rendered(&files, diagnostic, color)).collect()
+}
+
+fn rendered(files: &Shown, diagnostic: &Diagnostic, color: bool) -> String {
+    let config = Config { chars: Chars::box_drawing(), tab_width: 4, ..Config::default() };
+    let page = page(diagnostic, files.sources);
+    let emitted = if color {
+        emit_colored(&config, files, &page)
+    } else {
+        term::emit_into_string(&config, files, &page)
+    };
+    emitted.unwrap_or_else(|_| line(files, diagnostic))
 }
 
 fn emit_colored(config: &Config, files: &Shown, page: &Page<usize>) -> Result<String, Error> {
@@ -69,20 +66,22 @@ fn page(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
 
 /// One line each: `file:line:column: error[E0101]: message`.
 pub fn short(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
-    let mut text = String::new();
-    for diagnostic in diagnostics {
-        let at = Position::of(sources, diagnostic.place);
-        let (file, line, column) = (&at.file, at.line_start, at.column_start);
-        text.push_str(&format!("{file}:{line}:{column}: error[{}]: {}\n", diagnostic.code, diagnostic.message));
-    }
-    text
+    let files = Shown::new(sources);
+    diagnostics.iter().map(|diagnostic| line(&files, diagnostic)).collect()
+}
+
+fn line(files: &Shown, diagnostic: &Diagnostic) -> String {
+    let at = Position::of(files, diagnostic.place);
+    let (file, line, column) = (&at.file, at.line_start, at.column_start);
+    format!("{file}:{line}:{column}: error[{}]: {}\n", diagnostic.code, diagnostic.message)
 }
 
 /// One JSON object a line, in the manner of rustc's `--error-format json`.
 pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    let files = Shown::new(sources);
     let mut text = String::new();
     for diagnostic in diagnostics {
-        let message = Message::of(sources, diagnostic);
+        let message = Message::of(&files, diagnostic);
         text.push_str(&serde_json::to_string(&message).unwrap_or_default());
         text.push('\n');
     }
@@ -121,9 +120,9 @@ struct Child<'a> {
 }
 
 impl<'a> Message<'a> {
-    fn of(sources: &Sources, diagnostic: &'a Diagnostic) -> Message<'a> {
+    fn of(files: &Shown, diagnostic: &'a Diagnostic) -> Message<'a> {
         let span = |place: Place, is_primary: bool, label: &str| JsonSpan {
-            position: Position::of(sources, place),
+            position: Position::of(files, place),
             is_primary,
             label: label.to_owned(),
         };
@@ -136,7 +135,7 @@ impl<'a> Message<'a> {
             level: "error",
             spans: std::iter::once(primary).chain(related).collect(),
             children: help.collect(),
-            rendered: human(sources, std::slice::from_ref(diagnostic)),
+            rendered: rendered(files, diagnostic, false),
         }
     }
 }
@@ -155,10 +154,10 @@ struct Position {
 }
 
 impl Position {
-    fn of(sources: &Sources, place: Place) -> Position {
-        let (file, text) = sources.get(place).map_or(("", ""), |s| (s.path.as_str(), &*s.text));
-        let (line_start, column_start) = line_and_column(text, place.span.start as usize);
-        let (line_end, column_end) = line_and_column(text, place.span.end as usize);
+    fn of(files: &Shown, place: Place) -> Position {
+        let file = files.sources.get(place).map_or("", |source| source.path.as_str());
+        let (line_start, column_start) = files.line_and_column(place.file, place.span.start);
+        let (line_end, column_end) = files.line_and_column(place.file, place.span.end);
         Position {
             file: file.to_owned(),
             byte_start: place.span.start,
@@ -171,13 +170,6 @@ impl Position {
     }
 }
 
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = text.get(..offset.min(text.len())).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
-    (line, column)
-}
-
 /// The texts with the starts of their lines.
 struct Shown<'a> {
     sources: &'a Sources,
@@ -188,6 +180,17 @@ impl<'a> Shown<'a> {
     fn new(sources: &'a Sources) -> Shown<'a> {
         let starts = |text: &str| codespan_reporting::files::line_starts(text).collect();
         Shown { sources, lines: sources.0.iter().map(|source| starts(&source.text)).collect() }
+    }
+}
+
+impl Shown<'_> {
+    /// From 1; columns in characters.
+    fn line_and_column(&self, file: u32, offset: u32) -> (usize, usize) {
+        let (file, offset) = (file as usize, offset as usize);
+        let (Some(source), Ok(line)) = (self.sources.0.get(file), self.line_index(file, offset)) else { return (1, 1) };
+        let start = self.lines.get(file).and_then(|lines| lines.get(line)).copied().unwrap_or(0);
+        let before = source.text.get(start..offset).unwrap_or_default();
+        (line + 1, before.chars().count() + 1)
     }
 }
 

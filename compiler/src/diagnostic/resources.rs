@@ -28,8 +28,13 @@ pub fn unreadable_file(place: Place, path: &str, reason: &str) -> Diagnostic {
 
 /// A file of too many bytes.
 pub fn file_too_large(place: Place, path: &str, limit: u64) -> Diagnostic {
-    Diagnostic::new("E0504", place, format!("`{path}` has more than {} MiB", limit >> 20), "a file of this size is not opened")
-        .help("save the picture smaller, or with compression")
+    Diagnostic::new(
+        "E0504",
+        place,
+        format!("`{path}` has more than {} MiB", limit >> 20),
+        "a file of this size is not opened",
+    )
+    .help("save the picture smaller, or with compression")
 }
 
 /// Bytes that are no whole picture.
@@ -74,8 +79,13 @@ pub fn sizes_differ(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2
 
 /// More layers than every GPU has.
 pub fn too_many_layers(place: Place, layers: u64, limit: u32) -> Diagnostic {
-    Diagnostic::new("E0509", place, format!("{layers} patterns are too many"), format!("a texture has at most {limit} layers"))
-        .help("spread them over several resources, and choose between these with `if`")
+    Diagnostic::new(
+        "E0509",
+        place,
+        format!("{layers} patterns are too many"),
+        format!("a texture has at most {limit} layers"),
+    )
+    .help("spread them over several resources, and choose between these with `if`")
 }
 
 /// Sizes or numbers in the constructor's arguments that make no table.

@@ -2,22 +2,91 @@
 
 use super::{Diagnostic, Place};
 
-/// A value of another type than wanted.
-pub fn mismatch(place: Place, wanted: &str, found: &str) -> Diagnostic {
-    let help = match (wanted, found) {
-        ("bool", "int" | "float") => Some("compare it: `x != 0`".to_owned()),
-        (_, "bool") if wanted != "bool" => Some("choose by it: `if c { 1.0 } else { 0.0 }`".to_owned()),
-        _ if wanted.starts_with('i') && !found.starts_with('i') && found != "bool" => {
-            Some("nothing narrows by itself: `ifloor(x)` rounds down, `int(x)` truncates".to_owned())
-        }
-        _ => None,
+/// A value of another type than wanted, for an input or output if it has a name.
+pub fn mismatch(place: Place, name: Option<&str>, wanted: &str, found: &str) -> Diagnostic {
+    let message = match name {
+        Some(name) => format!("`{name}` takes `{wanted}`, this is `{found}`"),
+        None => format!("`{wanted}` is wanted, this is `{found}`"),
     };
-    Diagnostic::new("E0201", place, format!("this is `{found}`, `{wanted}` is wanted"), format!("`{found}`"))
-        .maybe_help(help)
+    Diagnostic::new("E0201", place, message, format!("`{found}`")).maybe_help(conversion(wanted, found))
 }
+
+/// Arms of an `if` that have no common type.
+pub fn arms_differ(place: Place, wanted: &str, found: &str, other: Place) -> Diagnostic {
+    let message = format!("the arms of this `if` are `{wanted}` and `{found}`");
+    Diagnostic::new("E0201", place, message, format!("`{found}`"))
+        .related(other, format!("`{wanted}`"))
+        .maybe_help(conversion(wanted, found))
+}
+
+/// A next value that the type of an accumulator can't hold.
+pub fn accumulator(place: Place, name: &str, wanted: &str, found: &str, start: Place) -> Diagnostic {
+    let help = (wanted == "int" && found == "float").then(|| "start with a float, such as `1.0`".to_owned());
+    let message = format!("the accumulator `{name}` is `{wanted}`, its next value `{found}`");
+    Diagnostic::new("E0201", place, message, format!("`{found}`"))
+        .related(start, format!("its start is `{wanted}`"))
+        .maybe_help(help.or_else(|| conversion(wanted, found)))
+}
+
+/// The letter of a type's scalar and its width.
+fn shape(ty: &str) -> Option<(char, usize)> {
+    Some(match ty {
+        "bool" => ('b', 1),
+        "float" => ('f', 1),
+        "int" => ('i', 1),
+        _ => {
+            let (scalar, width) = ty.strip_prefix("ivec").map(|w| ('i', w)).or(ty.strip_prefix("vec").map(|w| ('f', w)))?;
+            (scalar, width.parse().ok()?)
+        }
+    })
+}
+
+/// How one type becomes another.
+fn conversion(wanted: &str, found: &str) -> Option<String> {
+    let narrows = "nothing narrows by itself: `ifloor(x)` rounds down, `int(x)` truncates";
+    Some(match (shape(wanted)?, shape(found)?) {
+        (('b', _), (_, 1)) => "compare it: `x != 0`".to_owned(),
+        (('b', _), _) => "compare a component: `v.x > 0.0`".to_owned(),
+        (_, ('b', _)) => "choose by it: `if c { 1.0 } else { 0.0 }`".to_owned(),
+        (('i', want), ('f', have)) if have == 1 || have == want => narrows.to_owned(),
+        ((_, 1), _) => "take one component, such as `.x`".to_owned(),
+        ((scalar, want), (other, have)) if have > want => {
+            let round = if (scalar, other) == ('i', 'f') { " of its `ifloor`" } else { "" };
+            format!("take {want} components{round}: `.{}`", "xyzw".get(..want)?)
+        }
+        ((scalar, want), (_, have)) if have < want => {
+            // What a fourth component is missing for is mostly alpha.
+            let parts = if scalar == 'i' { ["0"; 4] } else { ["0.0", "0.0", "0.0", "1.0"] };
+            format!("add what is missing: `{wanted}(v, {})`", parts.get(have..want)?.join(", "))
+        }
+        _ => return None,
+    })
+}
+
+/// Names of types in other languages.
+const FOREIGN: &[(&str, &str)] = &[
+    ("boolean", "bool"),
+    ("colour", "color"),
+    ("double", "float"),
+    ("f32", "float"),
+    ("float2", "vec2"),
+    ("float3", "vec3"),
+    ("float4", "vec4"),
+    ("i32", "int"),
+    ("int2", "ivec2"),
+    ("int3", "ivec3"),
+    ("int4", "ivec4"),
+    ("integer", "int"),
+    ("number", "float"),
+    ("real", "float"),
+    ("sampler2D", "image"),
+    ("texture2D", "image"),
+];
 
 /// A type nobody knows.
 pub fn unknown_type(place: Place, name: &str, near: Option<String>) -> Diagnostic {
+    let foreign = FOREIGN.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| (*ours).to_owned());
+    let near = foreign.or(near);
     Diagnostic::new("E0202", place, format!("there is no type `{name}`"), "no such type")
         .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
 }
@@ -35,15 +104,42 @@ pub fn widths_differ(place: Place, first: u8, second: u8, first_place: Place) ->
 }
 
 /// More arguments than inputs.
-pub fn too_many_arguments(place: Place, name: &str, takes: usize) -> Diagnostic {
-    let inputs = if takes == 1 { "one input".to_owned() } else { format!("{takes} inputs") };
-    Diagnostic::new("E0204", place, format!("`{name}` has {inputs}"), "one argument too many")
+pub fn too_many_arguments(place: Place, name: &str, inputs: &[&str]) -> Diagnostic {
+    let takes = match inputs.len() {
+        0 => "no inputs".to_owned(),
+        1 => "one input".to_owned(),
+        count => format!("{count} inputs"),
+    };
+    let listed = (!inputs.is_empty()).then(|| format!("it takes {}", list(inputs)));
+    Diagnostic::new("E0204", place, format!("`{name}` has {takes}"), "one argument too many").maybe_help(listed)
+}
+
+/// `a`, `b`, `c`
+fn list(names: &[impl AsRef<str>]) -> String {
+    names.iter().map(|name| format!("`{}`", name.as_ref())).collect::<Vec<_>>().join(", ")
+}
+
+/// An argument of `sample` or `texel` that stands without its name.
+pub fn named_only(place: Place, name: &str, inputs: &[&str]) -> Diagnostic {
+    let names = inputs.iter().map(|input| format!("`{input}: …`")).collect::<Vec<_>>().join(", ");
+    too_many_arguments(place, name, &[]).because(format!("only the first argument of `{name}` goes by position"))
+        .help(format!("name the others: {names}"))
 }
 
 /// An input without argument and default.
 pub fn missing_argument(place: Place, name: &str, input: &str, ty: &str) -> Diagnostic {
     Diagnostic::new("E0205", place, format!("`{name}` needs `{input}`"), format!("no argument for `{input}: {ty}`"))
         .help(format!("add it by position, or as `{input}: …`"))
+}
+
+/// The layer that a layered view needs.
+pub fn missing_layer(place: Place, name: &str) -> Diagnostic {
+    missing_argument(place, name, "layer", "int").help("say which layer is meant: `layer: …`")
+}
+
+/// A layer of a view that has none.
+pub fn no_layers(place: Place, name: &str) -> Diagnostic {
+    unknown_argument(place, name, "layer", None).help("only layered views, such as those of `patterns`, have layers")
 }
 
 /// A named argument that is no input.
@@ -53,8 +149,9 @@ pub fn unknown_argument(place: Place, name: &str, input: &str, near: Option<Stri
 }
 
 /// An input that is given two arguments.
-pub fn argument_twice(place: Place, name: &str, input: &str) -> Diagnostic {
+pub fn argument_twice(place: Place, name: &str, input: &str, first: Place) -> Diagnostic {
     Diagnostic::new("E0207", place, format!("`{input}` of `{name}` is given twice"), "the second")
+        .related(first, "the first")
 }
 
 /// Operands or arguments that no overload takes.
@@ -75,8 +172,8 @@ pub fn destructuring(place: Place, names: usize, outputs: &[String]) -> Diagnost
     Diagnostic::new(
         "E0212",
         place,
-        format!("{names} names for {} outputs", outputs.len()),
-        format!("the outputs are {}", outputs.join(", ")),
+        format!("{names} {} for {} outputs", if names == 1 { "name" } else { "names" }, outputs.len()),
+        format!("the outputs are {}", list(outputs)),
     )
     .help("give one name to each output in order, or name the whole and take `t.output`")
 }
@@ -90,18 +187,25 @@ pub fn not_a_record(place: Place) -> Diagnostic {
 /// Several outputs where one value is wanted.
 pub fn record_as_value(place: Place, outputs: &[String]) -> Diagnostic {
     let help = outputs.first().map(|first| format!("take one of its outputs: `.{first}`"));
-    Diagnostic::new("E0213", place, "this has several outputs, one value is wanted", outputs.join(", "))
+    Diagnostic::new("E0213", place, "this has several outputs, one value is wanted", format!("its outputs are {}", list(outputs)))
         .maybe_help(help)
 }
 
 /// A bare word that is no choice.
-pub fn unknown_choice(place: Place, input: &str, words: &[String]) -> Diagnostic {
-    Diagnostic::new("E0214", place, format!("`{input}` is one of {}", words.join(", ")), "not one of them")
+pub fn unknown_choice(place: Place, input: &str, words: &[String], found: &str) -> Diagnostic {
+    let near = super::names::nearest(found, words.iter().map(String::as_str));
+    Diagnostic::new("E0214", place, format!("`{input}` is one of {}", list(words)), "not one of them")
+        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
+}
+
+/// A choice written as a string.
+pub fn quoted_choice(place: Place, input: &str, words: &[String]) -> Diagnostic {
+    unknown_choice(place, input, words, "").help("a choice is a bare word: write it without quotes")
 }
 
 /// A receiver whose type no node of that name takes first.
 pub fn bad_receiver(place: Place, name: &str, found: &str, accepted: &[String]) -> Diagnostic {
-    Diagnostic::new("E0215", place, format!("no `{name}` takes `{found}` first"), format!("called on `{found}`"))
+    Diagnostic::new("E0215", place, format!("no `{name}` takes {found} first"), format!("given {found}"))
         .help(format!("`{name}` is for {}", accepted.join(", ")))
 }
 
@@ -142,6 +246,18 @@ pub fn unknown_dimension(place: Place, name: &str) -> Diagnostic {
         .help(format!("declare it behind the node's name: `node name<{name}>(…)`"))
 }
 
+/// A generic type without its dimension.
+pub fn missing_dimension(place: Place, name: &str) -> Diagnostic {
+    Diagnostic::new("E0220", place, format!("how many components `{name}` has is not said"), "no dimension")
+        .help(format!("write `{name}2`, or `{name}<n>` where the node declares `<n>`"))
+}
+
+/// A dimension for something that has none.
+pub fn no_dimension(place: Place, name: &str) -> Diagnostic {
+    Diagnostic::new("E0227", place, format!("`{name}` has no dimension"), "called with one")
+        .help("leave out what stands between `<` and `>`")
+}
+
 /// A dimension outside 1 to 4.
 pub fn bad_dimension(place: Place, found: u32) -> Diagnostic {
     Diagnostic::new("E0221", place, format!("a vector can't have {found} components"), "1 to 4 are possible")
@@ -152,9 +268,15 @@ pub fn not_a_value(place: Place, what: &str) -> Diagnostic {
     Diagnostic::new("E0222", place, format!("{what} is not a value"), "a number, vector or bool is wanted here")
 }
 
+/// A resource where a value is wanted, with the nodes that read it.
+pub fn resource_as_value(place: Place, kind: &str, nodes: &[String]) -> Diagnostic {
+    let calls = nodes.iter().map(|node| format!("`.{node}(…)`")).collect::<Vec<_>>().join(" or ");
+    not_a_value(place, &format!("`{kind}`")).maybe_help((!nodes.is_empty()).then(|| format!("read it with {calls}")))
+}
+
 /// A resource where another thing is wanted, or the other way round.
-pub fn resource_mismatch(place: Place, wanted: &str, found: &str) -> Diagnostic {
-    Diagnostic::new("E0223", place, format!("`{wanted}` is wanted, this is `{found}`"), format!("`{found}`"))
+pub fn resource_mismatch(place: Place, input: &str, wanted: &str, found: &str) -> Diagnostic {
+    Diagnostic::new("E0223", place, format!("`{input}` takes {wanted}, this is {found}"), found)
 }
 
 /// A comparison of what has no order.
@@ -165,6 +287,6 @@ pub fn not_a_scalar(place: Place, found: &str) -> Diagnostic {
 
 /// A type that can't stand where it stands.
 pub fn type_not_allowed(place: Place, ty: &str, here: &str) -> Diagnostic {
-    Diagnostic::new("E0226", place, format!("`{ty}` can't be the type of {here}"), "not here")
-        .help("floats, ints, bools, vectors and colours can")
+    let help = if ty == "bool" { "write a number: `if c { 1.0 } else { 0.0 }`" } else { "numbers, vectors and colours can" };
+    Diagnostic::new("E0226", place, format!("`{ty}` can't be the type of {here}"), "not here").help(help)
 }

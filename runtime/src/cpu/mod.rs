@@ -1,14 +1,12 @@
 //! The CPU renderer: evaluates a program's graph at every pixel.
 //!
 //! The twin of the GPU: it needs no driver, defines what a program is worth, and is what the GPU's
-//! pictures are compared with. A [`Plan`] is made once for a picture: which operations the wanted
-//! output needs, and what those are worth that no pixel changes. A [`Machine`] then runs the plan
+//! pictures are compared with. A plan is made once for a picture: which operations the wanted
+//! output needs, and what those are worth that no pixel changes. A machine then runs the plan
 //! for a pixel; rows are spread over all cores. A version that runs batches of pixels can take the
 //! place of the machine alone.
-//!
-//! [`Plan`]: plan::Plan
-//! [`Machine`]: machine::Machine
 
+mod demand;
 mod machine;
 mod plan;
 mod sample;

@@ -1,21 +1,20 @@
 //! What to compute for a picture: the operations that the wanted output needs, function by
 //! function, and the values that no pixel changes.
 //!
-//! Demand runs from the entry down: a function's outputs are wanted where a live call of it has
-//! a live `Output`. A value is *known* when it depends on no input of its function (in the entry:
-//! on none that changes per pixel); it is computed here, once, calls included. All others become
-//! [`Step`]s.
+//! A value is *known* when it depends on no input of its function (in the entry: on none that
+//! changes per pixel); it is computed here, once, calls included. All others become [`Step`]s.
 //!
 //! A planned function keeps the graph's own [`Operation`]s, over *registers* instead of values:
 //! those below the number of known values are the function's constants, the others its frame, which
 //! begins with its inputs.
 
+use super::demand::demand;
 use super::machine::{Machine, evaluate};
 use super::texture::Texture;
 use crate::flat::Slope;
 use crate::render::{RenderError, Request};
 use texgraph_compiler::Program;
-use texgraph_compiler::graph::{Axis, Constant, Function, Graph, Operation, Value};
+use texgraph_compiler::graph::{Axis, Constant, Function, Operation, Value};
 use texgraph_compiler::manifest;
 
 /// The most operations a pixel.
@@ -102,33 +101,6 @@ fn bound(operations: u64) -> Result<(), RenderError> {
         return Err(RenderError::TooMuchWork { operations, limit: MAX_OPERATIONS });
     }
     Ok(())
-}
-
-/// Which values of each function the output needs.
-fn demand(graph: &Graph, output: usize) -> Vec<Vec<bool>> {
-    let functions = &graph.functions;
-    let mut live: Vec<Vec<bool>> =
-        functions.iter().map(|function| vec![false; function.values.len()]).collect();
-    if let Some((_, value)) = functions.last().and_then(|entry| entry.outputs.get(output)) {
-        live[functions.len() - 1][value.0 as usize] = true;
-    }
-    for id in (0..functions.len()).rev() {
-        let (callees, rest) = live.split_at_mut(id);
-        let own = &mut rest[0];
-        for (value, operation) in functions[id].iter().rev() {
-            if !own[value.0 as usize] {
-                continue;
-            }
-            operation.for_operands(|operand| own[operand.0 as usize] = true);
-            if let Operation::Output(call, n) = operation
-                && let Operation::Call(callee, _) = functions[id].operation(*call)
-                && let Some((_, wanted)) = functions[callee.0 as usize].outputs.get(*n as usize)
-            {
-                callees[callee.0 as usize][wanted.0 as usize] = true;
-            }
-        }
-    }
-    live
 }
 
 /// What is known of a value while its function is planned.

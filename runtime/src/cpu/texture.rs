@@ -37,6 +37,15 @@ enum Texels {
 }
 
 impl Texture {
+    fn single() -> Texture {
+        Texture {
+            levels: vec![Level { size: IVec2::ONE, layers: 1, start: 0 }],
+            wrap: Wrap::Clamp,
+            filter: Filter::Nearest,
+            texels: Texels::Int(vec![IVec4::ZERO]),
+        }
+    }
+
     /// Texels of level 0, across and down.
     pub fn size(&self) -> IVec2 {
         self.levels[0].size
@@ -72,24 +81,24 @@ impl Level {
     }
 }
 
-/// The textures of all views of a graph, in their order.
+/// The textures of all views of a graph, in their order; a single texel for a view that nothing
+/// reads.
 ///
 /// # Errors
 /// The bytes of one are missing or too few.
 pub fn decode_all(graph: &Graph, manifest: &Manifest, tables: &Tables) -> Result<Vec<Texture>, RenderError> {
-    let decode = |view: &texgraph_compiler::graph::ResourceView| {
-        let resource = manifest.resources.get(view.resource as usize)?;
-        let texture = resource.textures.iter().find(|texture| texture.field == view.field)?;
-        let bytes = tables.get(view.resource as usize, view.field)?;
-        decode(texture, texture.table.as_ref()?, bytes)
-    };
-    let textures = graph.views.iter().map(|view| {
-        decode(view).ok_or_else(|| RenderError::NoTable {
+    let decode_view = |view: &texgraph_compiler::graph::ResourceView| {
+        let resource = manifest.resources.get(view.resource as usize);
+        let texture = resource.and_then(|r| r.textures.iter().find(|texture| texture.field == view.field));
+        let Some(texture) = texture else { return Ok(Texture::single()) };
+        let bytes = tables.get(view.resource as usize, view.field);
+        let whole = bytes.zip(texture.table.as_ref());
+        whole.and_then(|(bytes, table)| decode(texture, table, bytes)).ok_or_else(|| RenderError::NoTable {
             resource: graph.resources.get(view.resource as usize).map_or(String::new(), |r| r.name.clone()),
             field: view.field.to_string(),
         })
-    });
-    textures.collect()
+    };
+    graph.views.iter().map(decode_view).collect()
 }
 
 /// None where the table and its bytes do not fit.

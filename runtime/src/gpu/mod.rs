@@ -4,7 +4,7 @@
 //! pipeline; the [`Scene`] it gives renders any number of pictures. Everything a shader asks for
 //! (bindings, samplers, offsets) is read from the manifest, as any other host would.
 //!
-//! Errors of the driver become [`RenderError::Gpu`]: every piece of work runs in [`Gpu::guarded`].
+//! Errors of the driver become [`RenderError::Gpu`]: every piece of work runs in `Gpu::guarded`.
 
 mod adapter;
 mod bindings;

@@ -1,6 +1,6 @@
 //! Resources: from the recipes of a program to the bytes of its textures.
 //!
-//! One file per kind makes the bytes of its fields; [`make`] is the table of kinds. Everything here
+//! One file per kind makes the bytes of its fields; `make` is the table of kinds. Everything here
 //! runs on the CPU, in parallel, and gives the same bytes for any number of threads and on any
 //! machine. Errors are found all at once and stand at the constructor calls.
 

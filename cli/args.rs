@@ -1,0 +1,257 @@
+//! Everything that can be typed after `texgraph`, with its help.
+//!
+//! clap makes the parser and the help from these types; what it refuses ends with exit code 2. The
+//! small parsers at the end read sizes, regions and times, so a subcommand only sees values that
+//! make sense.
+
+use clap::{Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
+use std::path::PathBuf;
+use texgraph_runtime::render::MAX_SIDE;
+
+const START: &str = "\
+Start here:
+  texgraph check  tiling.tex                  is the file right?
+  texgraph render tiling.tex -o tiling.png    what does it look like?
+  texgraph build  tiling.tex -o shaders       a shader for an engine, and what it needs
+
+Exit codes: 0 fine, 1 the input is wrong, 2 the command line is wrong, 3 the machine can't.";
+
+const CHECK: &str = "\
+Example:
+  texgraph check tiling.tex marble.tex
+Nothing is printed for a file without errors. Pictures are not opened: `render` and `build` do that.";
+
+const BUILD: &str = "\
+Example:
+  texgraph build tiling.tex -o shaders
+writes, for the file's one texture `tiling`:
+  shaders/tiling.wgsl              the shader
+  shaders/tiling.ron               what a host must bind and may set
+  shaders/tiling.grass.layers.bin  the texels of `grass`, all levels
+All files are made before the first is written; after an error the old ones are as they were.";
+
+const RENDER: &str = "\
+Examples:
+  texgraph render tiling.tex -o tiling.png
+  texgraph render walls.tex:bricks -o bricks.png --size 512x512 --set scale=2 --set tint=#8d8f94
+  texgraph render tiling.tex -o corner.png --region 0,0,0.25,0.25
+The picture shows a rectangle of `uv`, (0, 0) at its top left. Colours are written with 8 bits,
+other outputs as 16-bit linear data.";
+
+const FMT: &str = "\
+Examples:
+  texgraph fmt tiling.tex          rewrites the file if its layout is not the canonical one
+  texgraph fmt --check *.tex       lists the files that would change; exit code 1 if any would
+  texgraph fmt - < a.tex > b.tex   reads standard input, writes standard output
+Comments stay where they are. A file with syntax errors is left alone.";
+
+const EXPLAIN: &str = "\
+Examples:
+  texgraph explain E0501    what the error means, with a wrong and a right program
+  texgraph explain          all codes";
+
+/// Textures written as graphs, compiled to shaders for any engine.
+#[derive(Parser)]
+#[command(name = "texgraph", version, after_help = START, max_term_width = 100, disable_help_subcommand = true)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Report all errors of .tex files
+    Check(Check),
+    /// Write shaders, their manifests and the bytes of their textures
+    Build(Build),
+    /// Render a texture to a PNG picture
+    Render(Render),
+    /// Put .tex files into their canonical layout
+    Fmt(Fmt),
+    /// Explain an error code
+    Explain(Explain),
+}
+
+impl Command {
+    /// How errors are printed; subcommands without the flag print pages.
+    pub fn message_format(&self) -> MessageFormat {
+        match self {
+            Command::Check(Check { common, .. })
+            | Command::Build(Build { common, .. })
+            | Command::Render(Render { common, .. }) => common.message_format,
+            Command::Fmt(_) | Command::Explain(_) => MessageFormat::Human,
+        }
+    }
+}
+
+/// What every subcommand that reads programs takes.
+#[derive(clap::Args)]
+pub struct Common {
+    /// How errors are printed, on standard error
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub message_format: MessageFormat,
+    /// Let the program read files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum MessageFormat {
+    /// Pages with source lines and underlines
+    #[default]
+    Human,
+    /// One line each: `file:line:column: error[CODE]: message`
+    Short,
+    /// One JSON object a line
+    Json,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = CHECK)]
+pub struct Check {
+    /// The .tex files
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = BUILD)]
+pub struct Build {
+    /// The .tex file
+    pub file: PathBuf,
+    /// The folder that is written to; made if it is missing
+    #[arg(short, value_name = "DIR", default_value = ".")]
+    pub output: PathBuf,
+    /// The one texture to build; all of the file when not given
+    #[arg(long, value_name = "NAME")]
+    pub texture: Option<String>,
+    /// How the shader is wrapped
+    #[arg(long, value_enum, default_value_t, value_name = "FORM")]
+    pub form: Form,
+    /// The format of the manifest
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub manifest: ManifestFormat,
+    /// The @group of all bindings, 0 to 7
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=7))]
+    pub group: u32,
+    /// The first @binding, 0 to 999; the others follow
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=999))]
+    pub first_binding: u32,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Form {
+    /// With a fragment entry point
+    #[default]
+    Complete,
+    /// A function to import or to paste into another shader
+    Library,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum ManifestFormat {
+    /// For people and Rust
+    #[default]
+    Ron,
+    /// For everything else
+    Json,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = RENDER)]
+pub struct Render {
+    /// The .tex file, with the name of the texture if it is not the first: walls.tex:bricks
+    #[arg(value_name = "FILE[:TEXTURE]")]
+    pub file: OsString,
+    /// The PNG file that is written
+    #[arg(short, value_name = "OUT.png")]
+    pub output_file: PathBuf,
+    /// Pixels across and down
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size)]
+    pub size: [u32; 2],
+    /// The rectangle of `uv` that fills the picture; reversed bounds mirror it
+    #[arg(long, value_name = "X0,Y0,X1,Y1", default_value = "0,0,1,1", value_parser = region)]
+    #[arg(allow_hyphen_values = true)]
+    pub region: [f64; 4],
+    /// Set a param: a number, true or false, components with commas, or a colour (#rrggbb)
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// The input `time`, in seconds
+    #[arg(long, value_name = "SECONDS", default_value = "0", value_parser = seconds)]
+    #[arg(allow_hyphen_values = true)]
+    pub time: f32,
+    /// The output to render; when not given `color`, else the first
+    #[arg(long, value_name = "NAME")]
+    pub output: Option<String>,
+    /// Where to render
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// Say what renders
+    #[arg(short, long)]
+    pub verbose: bool,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Backend {
+    /// A GPU if there is one, else the CPU
+    #[default]
+    Auto,
+    /// A GPU, or exit code 3
+    Gpu,
+    /// The CPU
+    Cpu,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = FMT)]
+pub struct Fmt {
+    /// The .tex files; - is standard input
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Write nothing; list the files that would change
+    #[arg(long)]
+    pub check: bool,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = EXPLAIN)]
+pub struct Explain {
+    /// The code, as E0501 or 501
+    pub code: Option<String>,
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X', '×']).ok_or("write width and height as 512x256")?;
+    let side = |text: &str| {
+        let number = text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
+        number.ok_or_else(|| format!("a side has 1 to {MAX_SIDE} pixels, not `{text}`"))
+    };
+    Ok([side(sides.0)?, side(sides.1)?])
+}
+
+fn region(text: &str) -> Result<[f64; 4], String> {
+    let bounds: Vec<f64> = text.split(',').map(finite).collect::<Result<_, _>>()?;
+    let bounds: [f64; 4] = bounds.try_into().map_err(|_| "write four numbers as 0,0,1,1")?;
+    let [x0, y0, x1, y1] = bounds;
+    if x0 == x1 || y0 == y1 {
+        return Err("the region is empty".into());
+    }
+    Ok(bounds)
+}
+
+fn seconds(text: &str) -> Result<f32, String> {
+    let seconds = finite(text)? as f32;
+    if seconds.is_finite() { Ok(seconds) } else { Err(format!("`{text}` is too large")) }
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| format!("`{text}` is no finite number"))
+}

@@ -1,0 +1,105 @@
+//! `texgraph build`: shaders, manifests and table bytes for hosts.
+//!
+//! Everything is made in memory first. Files are written only when nothing is wrong with any
+//! texture, so the folder never holds a mixture of an old and a new build.
+
+use crate::args::{Build, Form, ManifestFormat};
+use crate::output;
+use crate::problem::{Problem, Report};
+use crate::program::{self, Program};
+use std::path::PathBuf;
+use std::sync::Arc;
+use texgraph_compiler::diagnostic::Diagnostic;
+use texgraph_compiler::manifest::{self, Manifest};
+use texgraph_compiler::{Failure, Options};
+use texgraph_runtime::resource::Tables;
+
+/// A file's name and its bytes.
+type Made = (String, Arc<[u8]>);
+
+/// Builds the textures of a file.
+///
+/// # Errors
+/// The file is wrong as a whole, or can't be written. What is wrong with single textures is shown
+/// as it is found.
+pub fn run(args: &Build, report: &mut Report) -> Result<(), Problem> {
+    let library = program::library()?;
+    let program = Program::open(&library, &args.file, args.common.allow_outside)?;
+    let mut made = Vec::new();
+    let mut shown = Vec::new();
+    for texture in wanted(args, &program)? {
+        match make(args, &program, texture) {
+            Ok(files) => made.extend(files),
+            Err(failure) => show(report, &mut shown, failure),
+        }
+    }
+    if shown.is_empty() {
+        write(args, made)?;
+    }
+    Ok(())
+}
+
+/// The named texture, or all of a file that is right as a whole. A file without textures wants the
+/// one that it does not have, and the compiler says so.
+fn wanted(args: &Build, program: &Program<'_>) -> Result<Vec<Option<String>>, Problem> {
+    if args.texture.is_some() {
+        return Ok(vec![args.texture.clone()]);
+    }
+    program.check()?;
+    let textures = program.textures()?;
+    Ok(if textures.is_empty() { vec![None] } else { textures.into_iter().map(Some).collect() })
+}
+
+/// Shows what has not been shown for an earlier texture: two that read one picture share its errors.
+fn show(report: &mut Report, shown: &mut Vec<Diagnostic>, mut failure: Failure) {
+    failure.diagnostics.retain(|diagnostic| !shown.contains(diagnostic));
+    shown.extend(failure.diagnostics.iter().cloned());
+    report.show(&Problem::Pages(failure));
+}
+
+/// All files of one texture.
+fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<Vec<Made>, Failure> {
+    let options = Options {
+        texture,
+        outputs: None,
+        form: match args.form {
+            Form::Complete => manifest::Form::Complete,
+            Form::Library => manifest::Form::Library,
+        },
+        group: args.group,
+        first_binding: args.first_binding,
+    };
+    let mut compiled = program.compile(&options)?;
+    let tables = program.load(&mut compiled)?;
+    let mut manifest = compiled.program.manifest;
+    let mut files = name_tables(&mut manifest, &tables);
+    let name = &manifest.texture;
+    files.push((format!("{name}.wgsl"), compiled.program.wgsl.into_bytes().into()));
+    files.push(match args.manifest {
+        ManifestFormat::Ron => (format!("{name}.ron"), manifest.to_ron().into_bytes().into()),
+        ManifestFormat::Json => (format!("{name}.json"), manifest.to_json().into_bytes().into()),
+    });
+    Ok(files)
+}
+
+/// The bytes of all textures that the shader reads, with the names that the manifest now has.
+fn name_tables(manifest: &mut Manifest, tables: &Tables) -> Vec<Made> {
+    let mut files = Vec::new();
+    for (index, resource) in manifest.resources.iter_mut().enumerate() {
+        for texture in &mut resource.textures {
+            if let (Some(table), Some(bytes)) = (&mut texture.table, tables.get(index, &texture.field)) {
+                let name = format!("{}.{}.{}.bin", manifest.texture, resource.name, texture.field);
+                table.file = Some(name.clone());
+                files.push((name, Arc::clone(bytes)));
+            }
+        }
+    }
+    files
+}
+
+fn write(args: &Build, made: Vec<Made>) -> Result<(), Problem> {
+    output::make_folder(&args.output)?;
+    let files = made.into_iter().map(|(name, bytes)| (args.output.join(name), bytes));
+    let files: Vec<(PathBuf, Arc<[u8]>)> = files.collect();
+    output::write(&files)
+}

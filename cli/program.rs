@@ -1,0 +1,104 @@
+//! A `.tex` file on its way to the compiler: opened, compiled, its pictures loaded.
+//!
+//! Every error comes out as a [`Problem`] with the texts that its pages show.
+
+use crate::problem::Problem;
+use std::path::Path;
+use texgraph_compiler::module::{Loader, Source, Sources};
+use texgraph_compiler::{Compiled, Failure, Library, Options};
+use texgraph_runtime::project::Project;
+use texgraph_runtime::resource::{self, Tables};
+
+/// The standard library.
+///
+/// # Errors
+/// It is broken, which no user can mend.
+pub fn library() -> Result<Library, Problem> {
+    Library::standard().map_err(|why| Problem::Machine(format!("a bug of texgraph, please report it: {why}")))
+}
+
+/// A main file that can be read.
+pub struct Program<'a> {
+    library: &'a Library,
+    project: Project,
+    /// The path as the user sees it, with `/`.
+    path: String,
+}
+
+impl<'a> Program<'a> {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// It can't be read.
+    pub fn open(library: &'a Library, file: &Path, allow_outside: bool) -> Result<Program<'a>, Problem> {
+        let (project, path) = project(file, allow_outside)?;
+        project.load(project.main()).map_err(|why| Problem::unread(&path, project.main(), why))?;
+        Ok(Program { library, project, path })
+    }
+
+    /// Checks everything in the file.
+    ///
+    /// # Errors
+    /// All errors of the file and what it imports.
+    pub fn check(&self) -> Result<(), Problem> {
+        texgraph_compiler::check(self.library, &self.path, &self.project)?;
+        Ok(())
+    }
+
+    /// The names of the file's textures.
+    ///
+    /// # Errors
+    /// All syntax errors.
+    pub fn textures(&self) -> Result<Vec<String>, Problem> {
+        Ok(texgraph_compiler::textures(self.library, &self.path, &self.project)?)
+    }
+
+    /// Compiles a texture.
+    ///
+    /// # Errors
+    /// All errors that concern it.
+    pub fn compile(&self, options: &Options) -> Result<Compiled, Failure> {
+        texgraph_compiler::compile(self.library, &self.path, &self.project, options)
+    }
+
+    /// Loads the textures that a compiled program reads, and enters their sizes into its manifest.
+    ///
+    /// # Errors
+    /// All that is wrong with any of the files.
+    pub fn load(&self, compiled: &mut Compiled) -> Result<Tables, Failure> {
+        let program = &mut compiled.program;
+        resource::load(&program.graph, &mut program.manifest, &self.project)
+            .map_err(|diagnostics| Failure { sources: compiled.sources.clone(), diagnostics })
+    }
+}
+
+/// The text of a `.tex` file, with its path as shown.
+///
+/// # Errors
+/// It can't be read.
+pub fn text(file: &Path) -> Result<(String, String), Problem> {
+    let (project, path) = project(file, false)?;
+    let text = project.load(project.main()).map_err(|why| Problem::unread(&path, project.main(), why))?;
+    Ok((path, text))
+}
+
+/// One text as what pages show.
+pub fn sources(path: &str, text: &str) -> Sources {
+    Sources(vec![Source { path: path.to_owned(), text: text.into() }])
+}
+
+/// The project of a file, and the file's path as shown. The compiler cuts that at the last `/`, so
+/// what is behind must be the name that the project knows.
+fn project(file: &Path, allow_outside: bool) -> Result<(Project, String), Problem> {
+    if file.file_name().is_none() {
+        return Err(Problem::Input(format!("`{}` is a folder, not a file", file.display())));
+    }
+    let project = Project::new(file, allow_outside);
+    let folder = file.parent().map(|folder| folder.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = if cfg!(windows) { folder.replace('\\', "/") } else { folder };
+    let path = match folder.as_str() {
+        "" => project.main().to_owned(),
+        _ => format!("{}/{}", folder.trim_end_matches('/'), project.main()),
+    };
+    Ok((project, path))
+}

@@ -1,0 +1,151 @@
+//! `texgraph render`: one output of a texture as a PNG picture.
+//!
+//! ```text
+//! FILE:TEXTURE ─compile─▶ program ─load─▶ tables ─render─▶ picture ─▶ OUT.png
+//! ```
+
+use crate::args::{Backend, Render};
+use crate::output;
+use crate::problem::Problem;
+use crate::program::{self, Program};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::ffi::OsStr;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use texgraph_compiler::{Compiled, Options};
+use texgraph_runtime::render::{self, Renderer, Request};
+use texgraph_runtime::settings::Settings;
+
+/// Renders shorter than this show no progress: a bar that only flashes is a nuisance.
+const PATIENCE: Duration = Duration::from_millis(700);
+
+/// Renders a texture.
+///
+/// # Errors
+/// Anything is wrong; the old picture is then as it was.
+pub fn run(args: &Render) -> Result<(), Problem> {
+    check_target(&args.output_file)?;
+    let (file, texture) = split(&args.file);
+    let library = program::library()?;
+    let program = Program::open(&library, &file, args.common.allow_outside)?;
+    let mut compiled = compile(&program, texture, args.output.as_deref())?;
+    let request = request(args, &compiled)?;
+    let tables = program.load(&mut compiled)?;
+    let renderer = Renderer::new(match args.backend {
+        Backend::Auto => render::Backend::Auto,
+        Backend::Gpu => render::Backend::Gpu,
+        Backend::Cpu => render::Backend::Cpu,
+    })?;
+    if args.verbose {
+        let _ = writeln!(std::io::stderr(), "rendering on: {}", renderer.name());
+    }
+    let progress = Progress::new();
+    let picture = renderer.render(&compiled.program, &tables, &request, &|share| progress.hear(share))?;
+    progress.bar.finish_and_clear();
+    output::write(&[(args.output_file.clone(), picture.to_png()?)])
+}
+
+/// The picture is a PNG, and there is a place for it.
+fn check_target(path: &Path) -> Result<(), Problem> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        let path = path.display();
+        return Err(Problem::Usage(format!("only PNG pictures are written: `{path}` must end in `.png`")));
+    }
+    output::try_out(path)
+}
+
+/// Cuts `FILE:TEXTURE`. What follows the last `:` is a texture only if it could be the name of one:
+/// `C:\walls.tex` is a file.
+fn split(argument: &OsStr) -> (PathBuf, Option<String>) {
+    let cut = argument.to_str().and_then(|text| text.rsplit_once(':'));
+    match cut {
+        Some((file, name)) if !file.is_empty() && is_name(name) => (file.into(), Some(name.to_owned())),
+        _ => (argument.into(), None),
+    }
+}
+
+fn is_name(text: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+    text.starts_with(is_letter) && text.chars().all(|c| is_letter(c) || c.is_ascii_digit())
+}
+
+/// Compiles the wanted output alone. Which outputs there are is known only after compiling, so
+/// without a name that happens twice: it takes milliseconds.
+fn compile(
+    program: &Program<'_>,
+    texture: Option<String>,
+    output: Option<&str>,
+) -> Result<Compiled, Problem> {
+    let wanted = |output: &str| Some(vec![output.to_owned()]);
+    let mut options = Options { texture, outputs: output.and_then(wanted), ..Options::default() };
+    let compiled = program.compile(&options)?;
+    let outputs = &compiled.program.manifest.outputs;
+    if outputs.len() <= 1 {
+        return Ok(compiled);
+    }
+    let chosen = outputs.iter().find(|output| output.name == "color").or(outputs.first());
+    options.outputs = chosen.and_then(|output| wanted(&output.name));
+    Ok(program.compile(&options)?)
+}
+
+fn request(args: &Render, compiled: &Compiled) -> Result<Request, Problem> {
+    let mut settings = Settings::new();
+    for setting in &args.set {
+        settings.parse(&compiled.program.manifest, setting)?;
+    }
+    Ok(Request { size: args.size, region: args.region, time: args.time, settings, output: 0 })
+}
+
+/// A bar that appears when the render takes long, and only on a terminal.
+struct Progress {
+    bar: ProgressBar,
+    start: Instant,
+    is_shown: AtomicBool,
+}
+
+impl Progress {
+    fn new() -> Progress {
+        let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
+        // The default style is a bar too, so a template that is refused costs looks only.
+        if let Ok(style) = ProgressStyle::with_template("rendering {wide_bar} {percent:>3} % {eta:>4}") {
+            bar.set_style(style);
+        }
+        Progress { bar, start: Instant::now(), is_shown: AtomicBool::new(false) }
+    }
+
+    /// Hears a share from 0 to 1, from any thread.
+    fn hear(&self, share: f32) {
+        if self.start.elapsed() > PATIENCE && !self.is_shown.swap(true, Ordering::Relaxed) {
+            // Standard error that is no terminal stays silent by itself.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.set_position((share.clamp(0.0, 1.0) * 1000.0) as u64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split;
+    use std::ffi::OsStr;
+    use std::path::PathBuf;
+
+    #[test]
+    fn a_texture_is_cut_off_only_where_one_is_named() {
+        let cases = [
+            ("a.tex", "a.tex", None),
+            ("a.tex:bricks", "a.tex", Some("bricks")),
+            (r"C:\a.tex", r"C:\a.tex", None),
+            (r"C:\a.tex:_b2", r"C:\a.tex", Some("_b2")),
+            ("C:/a.tex", "C:/a.tex", None),
+            ("a.tex:", "a.tex:", None),
+            (":bricks", ":bricks", None),
+            ("a.tex:2b", "a.tex:2b", None),
+            ("a:b:c", "a:b", Some("c")),
+        ];
+        for (argument, file, texture) in cases {
+            assert_eq!(split(OsStr::new(argument)), (PathBuf::from(file), texture.map(str::to_owned)));
+        }
+    }
+}

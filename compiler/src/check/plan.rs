@@ -1,0 +1,193 @@
+//! The plan of a function: its statements as steps in an order that works, and what is wrong with
+//! the names that they bind.
+
+use super::{Checker, Frame, Step, Target, globals, order};
+use crate::diagnostic::names;
+use rustc_hash::{FxHashMap, FxHashSet};
+use texgraph_grammar::syntax::{Name, Node, Pattern, Span, Statement};
+
+/// Names of a function that were reported as unknown: each is reported once.
+#[derive(Default)]
+pub struct Reported {
+    names: FxHashSet<String>,
+    order: Vec<String>,
+}
+
+impl Reported {
+    pub(super) fn contains(&self, name: &str) -> bool {
+        self.names.contains(name)
+    }
+
+    pub(super) fn insert(&mut self, name: &str) {
+        if self.names.insert(name.to_owned()) {
+            self.order.push(name.to_owned());
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// Forgets what came later.
+    pub(super) fn truncate(&mut self, len: usize) {
+        for name in self.order.drain(len.min(self.order.len())..) {
+            self.names.remove(&name);
+        }
+    }
+}
+
+impl<'a> Checker<'a> {
+    /// The steps of a node.
+    pub(super) fn plan_node(&mut self, f: &mut Frame<'a>, node: &'a Node) {
+        f.builder.set_inline(node.body.statements.len() == 1 && node.outputs.len() == 1);
+        self.distinct(f, node.inputs.iter().map(|i| &i.name).chain(node.outputs.iter().map(|o| &o.name)));
+        let is_input = |name: &Name| node.inputs.iter().any(|input| input.name.text == name.text);
+        let mut bound: Vec<&'a Name> = node.inputs.iter().map(|i| &i.name).collect();
+        for statement in &node.body.statements {
+            match statement {
+                Statement::Let { pattern, value, .. } => {
+                    match pattern {
+                        Pattern::Name(name) => bound.push(name),
+                        Pattern::Record(names, _) => bound.extend(names),
+                    }
+                    f.steps.push(Step { target: Target::Let(pattern), value });
+                }
+                Statement::Assign { name, value } => {
+                    self.assign(f, node, name);
+                    // That an output has the name of an input is said of the head.
+                    if !is_input(name) || !is_output(node, name) {
+                        bound.push(name);
+                    }
+                    f.steps.push(Step { target: Target::Output(name), value });
+                }
+            }
+        }
+        self.distinct(f, bound.into_iter());
+        self.outputs_assigned(f, node);
+        self.sort(f);
+    }
+
+    fn assign(&mut self, f: &mut Frame<'a>, node: &'a Node, name: &Name) {
+        if !is_output(node, name) {
+            let near = self.near(&name.text, node.outputs.iter().map(|o| o.name.text.as_str()));
+            let place = self.place(f, name.span);
+            self.report(f, names::no_such_output(place, &node.name.text, &name.text, near));
+        }
+    }
+
+    /// The name that was most likely meant. Only the first errors of a file get this help: it looks
+    /// at all names there are.
+    pub(super) fn near<'n>(&self, name: &str, known: impl IntoIterator<Item = &'n str>) -> Option<String> {
+        if self.diagnostics.len() < 100 { names::nearest(name, known) } else { None }
+    }
+
+    fn outputs_assigned(&mut self, f: &mut Frame<'a>, node: &'a Node) {
+        let assigned: Vec<&Name> = node.body.statements.iter().filter_map(assigned).collect();
+        let mut misspelt = assigned.iter().filter(|name| !is_output(node, name)).count();
+        for output in &node.outputs {
+            if assigned.iter().any(|name| name.text == output.name.text) {
+                continue;
+            }
+            // A misspelt assignment is reported already: one slip, one error.
+            if misspelt > 0 {
+                misspelt -= 1;
+                continue;
+            }
+            let place = self.place(f, output.name.span);
+            let (node_name, name) = (&node.name.text, &output.name.text);
+            let error = match node.body.statements.iter().find_map(|statement| let_of(statement, name)) {
+                Some(wire) => names::output_shadowed(place, node_name, name, self.place(f, wire)),
+                None => names::output_missing(place, node_name, name),
+            };
+            self.report(f, error);
+        }
+    }
+
+    /// Reports each name that stands twice; the first one holds.
+    pub(super) fn distinct(&mut self, f: &mut Frame<'a>, bound: impl Iterator<Item = &'a Name>) {
+        let mut seen: FxHashMap<&str, &Name> = FxHashMap::default();
+        for name in bound {
+            let first = *seen.entry(&name.text).or_insert(name);
+            if first.span != name.span {
+                f.repeated.insert(name.span.start);
+                let (place, first) = (self.place(f, name.span), self.place(f, first.span));
+                self.report(f, names::bound_twice(place, &name.text, first));
+            }
+        }
+    }
+
+    /// Puts the steps into an order that works. What stands in a ring is reported and comes in
+    /// any order: what else is wrong with it is found too.
+    pub(super) fn sort(&mut self, f: &mut Frame<'a>) {
+        let mut binder: FxHashMap<&str, usize> = FxHashMap::default();
+        for (i, step) in f.steps.iter().enumerate() {
+            for name in step.names() {
+                binder.entry(name).or_insert(i);
+            }
+        }
+        for input in f.node.iter().flat_map(|node| &node.inputs) {
+            binder.remove(input.name.text.as_str());
+        }
+        f.bound = binder.keys().copied().collect();
+        let reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
+        let needs: Vec<Vec<usize>> = f
+            .steps
+            .iter()
+            .map(|step| {
+                let free = order::Free::of(step.value);
+                let through = reach.as_ref().map(|reach| reach.values(&free.calls)).unwrap_or_default();
+                free.values.iter().chain(&through).filter_map(|name| binder.get(name).copied()).collect()
+            })
+            .collect();
+        let (order, rings) = order::sort(&needs);
+        f.order = order;
+        for ring in rings {
+            self.ring(f, &ring);
+        }
+    }
+
+    /// Reports a ring, from its first step in the text, at the name that leads to the next one.
+    fn ring(&mut self, f: &mut Frame<'a>, ring: &[usize]) {
+        let start = ring.iter().enumerate().min_by_key(|(_, step)| **step).map_or(0, |(i, _)| i);
+        let steps: Vec<&Step> = ring[start..].iter().chain(&ring[..start]).map(|i| &f.steps[*i]).collect();
+        let next = steps.get(1).or(steps.first()).map_or(Vec::new(), |step| step.names());
+        let span = steps.first().map_or(Span::default(), |step| read(step, &next).unwrap_or(step.span()));
+        let names: Vec<&'a str> = steps.iter().filter_map(|step| step.names().first().copied()).collect();
+        if f.node.is_none() {
+            // Nodes that read them must not find them missing.
+            let all: Vec<&'a str> = steps.iter().flat_map(|step| step.names()).collect();
+            self.globals[f.module].extend(all.into_iter().map(|name| (name.to_owned(), globals::Global::Unknown)));
+        }
+        let error = names::cycle(self.place(f, span), &names);
+        self.report(f, error);
+    }
+}
+
+fn is_output(node: &Node, name: &Name) -> bool {
+    node.outputs.iter().any(|output| output.name.text == name.text)
+}
+
+/// The name that a statement assigns.
+fn assigned(statement: &Statement) -> Option<&Name> {
+    match statement {
+        Statement::Assign { name, .. } => Some(name),
+        Statement::Let { .. } => None,
+    }
+}
+
+/// Where a `let` binds this name.
+fn let_of(statement: &Statement, name: &str) -> Option<Span> {
+    let Statement::Let { pattern, .. } = statement else { return None };
+    let bound = match pattern {
+        Pattern::Name(name) => std::slice::from_ref(name),
+        Pattern::Record(names, _) => names,
+    };
+    bound.iter().find(|bound| bound.text == name).map(|bound| bound.span)
+}
+
+/// Where a step reads one of these names.
+fn read(step: &Step, names: &[&str]) -> Option<Span> {
+    let free = order::Free::of(step.value);
+    let found = free.values.iter().zip(&free.places).find(|(name, _)| names.contains(name));
+    found.map(|(_, place)| *place)
+}

@@ -1,0 +1,16 @@
+//! The command as its users meet it: what it prints, what it writes, which exit code it ends with.
+//!
+//! Every test runs the real binary in a folder of its own. Pictures are small: debug builds are slow.
+
+#[path = "cli/build.rs"]
+mod build;
+#[path = "cli/check.rs"]
+mod check;
+#[path = "cli/fmt.rs"]
+mod fmt;
+#[path = "cli/help.rs"]
+mod help;
+#[path = "cli/render.rs"]
+mod render;
+#[path = "cli/workshop.rs"]
+mod workshop;

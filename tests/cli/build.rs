@@ -1,0 +1,111 @@
+//! `build`: files that agree with each other, all of them or none.
+
+use crate::workshop::{PLAIN, WRONG, Workshop, examples};
+use std::fs;
+use texgraph_compiler::Manifest;
+use texgraph_compiler::manifest::Form;
+
+const TWO: &str = "let order = permutation(16)\n\ntexture first(uv: vec2) -> (height: float) {\n    height = float(order.at(ifloor(uv.x * 16.0)).x)\n}\n\ntexture second(uv: vec2) -> (color: color) {\n    color = vec4(uv, 0.0, 1.0)\n}\n";
+
+#[test]
+fn tables_agree_with_the_manifest() {
+    let shop = Workshop::new(&[]);
+    let file = examples().join("tiling.tex");
+    let run = shop.run(&["build".as_ref(), file.as_os_str(), "-o".as_ref(), "new/out".as_ref()]);
+    assert!(run.is_silent(), "{run:#?}");
+    let manifest = Manifest::from_ron(&shop.text("new/out/tiling.ron")).expect("a manifest");
+    assert_eq!(manifest.passes[0].shader, "tiling.wgsl");
+    assert!(shop.text("new/out/tiling.wgsl").contains(&manifest.passes[0].entry_point));
+    let mut files = vec!["tiling.ron".to_owned(), "tiling.wgsl".to_owned()];
+    for texture in manifest.textures() {
+        let table = texture.table.as_ref().expect("a table");
+        let file = table.file.clone().expect("a file");
+        let last = table.levels.last().expect("a level");
+        let end =
+            last.offset + u64::from(last.bytes_per_row) * u64::from(last.height) * u64::from(last.layers);
+        assert_eq!(shop.read(&format!("new/out/{file}")).len() as u64, end, "{file}");
+        files.push(file);
+    }
+    files.sort();
+    assert!(files.contains(&"tiling.grass.layers.bin".to_owned()), "{files:?}");
+    let found = fs::read_dir(shop.path("new/out")).expect("the folder is read").flatten();
+    let mut found: Vec<String> =
+        found.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    found.sort();
+    assert_eq!(found, files);
+}
+
+#[test]
+fn every_texture_or_the_named_one() {
+    let shop = Workshop::new(&[("two.tex", TWO)]);
+    assert!(shop.run(&["build", "two.tex", "-o", "all"]).is_silent());
+    let names = ["first.order.table.bin", "first.ron", "first.wgsl", "second.ron", "second.wgsl"];
+    for name in names {
+        assert!(!shop.read(&format!("all/{name}")).is_empty(), "{name}");
+    }
+    assert!(shop.run(&["build", "two.tex", "--texture", "second"]).is_silent());
+    assert_eq!(shop.names(), ["all", "second.ron", "second.wgsl", "two.tex"]);
+    shop.run(&["build", "two.tex", "--texture", "third"]).fails(1, "`third`");
+}
+
+#[test]
+fn the_host_chooses_form_bindings_and_format() {
+    let shop = Workshop::new(&[("two.tex", TWO)]);
+    let arguments =
+        ["build", "two.tex", "--form", "library", "--manifest=json", "--group=2", "--first-binding=7"];
+    assert!(shop.run(&arguments).is_silent());
+    let manifest = Manifest::from_json(&shop.text("first.json")).expect("a manifest");
+    assert_eq!(manifest.form, Form::Library);
+    let bindings: Vec<_> = manifest.textures().map(|texture| (texture.group, texture.binding)).collect();
+    assert_eq!(bindings, [(2, 7)]);
+    let wgsl = shop.text("first.wgsl");
+    assert!(!wgsl.contains("@fragment") && wgsl.contains("@group(2) @binding(7)"), "{wgsl}");
+}
+
+#[test]
+fn an_error_leaves_the_old_files() {
+    let shop = Workshop::new(&[("a.tex", PLAIN)]);
+    assert!(shop.run(&["build", "a.tex"]).is_silent());
+    let old = (shop.read("plain.wgsl"), shop.read("plain.ron"));
+    let unreadable = "\n\nlet gone = image(\"gone.png\")\n\ntexture late(uv: vec2) -> (color: color) {\n    color = gone.sample(uv)\n}\n";
+    shop.write("a.tex", PLAIN.replace("uv.y", "0.25") + unreadable);
+    let run = shop.run(&["build", "a.tex"]);
+    run.fails(1, "gone.png");
+    run.fails(1, "─ a.tex:9:");
+    assert_eq!((shop.read("plain.wgsl"), shop.read("plain.ron")), old);
+    assert_eq!(shop.names(), ["a.tex", "plain.ron", "plain.wgsl"]);
+}
+
+#[test]
+fn textures_share_one_error() {
+    let read =
+        |name: &str| format!("texture {name}(uv: vec2) -> (color: color) {{ color = gone.sample(uv) }}\n");
+    let program = format!("let gone = image(\"gone.png\")\n{}{}", read("a"), read("b"));
+    let shop = Workshop::new(&[("a.tex", &program)]);
+    let run = shop.run(&["build", "a.tex", "--message-format=short"]);
+    run.fails(1, "a.tex:1:");
+    assert_eq!(run.err.lines().count(), 1, "{run:#?}");
+}
+
+#[test]
+fn what_can_not_be_built() {
+    let shop = Workshop::new(&[("empty.tex", "let a = 1\n"), ("wrong.tex", WRONG), ("a.tex", PLAIN)]);
+    shop.run(&["build", "empty.tex"]).fails(1, "no texture");
+    shop.run(&["build", "wrong.tex"]).fails(1, "wrong.tex:2:");
+    shop.run(&["build", "a.tex", "-o", "wrong.tex"]).fails(3, "a file has this name");
+    shop.run(&["build", "a.tex", "--group", "9"]).fails(2, "9 is not in 0..=7");
+    shop.run(&["build", "a.tex", "--first-binding", "4294967295"]).fails(2, "4294967295");
+    shop.write("blocked/plain.ron/x", "");
+    shop.run(&["build", "a.tex", "-o", "blocked"]).fails(3, "it is a folder");
+    assert!(!shop.path("blocked/plain.wgsl").exists());
+    assert_eq!(shop.names(), ["a.tex", "blocked", "empty.tex", "wrong.tex"]);
+}
+
+#[test]
+fn pictures_stay_in_the_folder() {
+    let program = "let out = image(\"../grass.png\")\n\ntexture t(uv: vec2) -> (color: color) {\n    color = out.sample(uv)\n}\n";
+    let shop = Workshop::new(&[("sub/a.tex", program)]);
+    shop.write("grass.png", fs::read(examples().join("tiles/grass.png")).expect("a picture"));
+    shop.run(&["build", "sub/a.tex"]).fails(1, "E0502");
+    assert!(shop.run(&["build", "sub/a.tex", "--allow-outside"]).is_silent());
+}
