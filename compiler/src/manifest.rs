@@ -268,18 +268,46 @@ pub struct Texture {
     pub table: Option<Table>,
 }
 
-/// The shape of a view.
+/// The shape of a view, by its WebGPU name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub enum ViewDimension {
     /// `texture_2d`
-    #[serde(rename = "2d")]
     D2,
     /// `texture_2d_array`
-    #[serde(rename = "2d_array")]
     D2Array,
     /// `texture_3d`
-    #[serde(rename = "3d")]
     D3,
+}
+
+impl ViewDimension {
+    const NAMES: &[(ViewDimension, &str)] =
+        &[(ViewDimension::D2, "2d"), (ViewDimension::D2Array, "2d-array"), (ViewDimension::D3, "3d")];
+}
+
+impl From<ViewDimension> for String {
+    fn from(view: ViewDimension) -> String {
+        name_of(ViewDimension::NAMES, view)
+    }
+}
+
+impl TryFrom<String> for ViewDimension {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<ViewDimension, String> {
+        named(ViewDimension::NAMES, &name)
+    }
+}
+
+/// The name of a value in a table of names.
+fn name_of<T: PartialEq>(names: &[(T, &str)], value: T) -> String {
+    names.iter().find(|(known, _)| *known == value).map_or(String::new(), |(_, name)| (*name).to_owned())
+}
+
+/// The value of a name in a table of names.
+fn named<T: Copy>(names: &[(T, &str)], name: &str) -> Result<T, String> {
+    let found = names.iter().find(|(_, known)| *known == name).map(|(value, _)| *value);
+    found.ok_or_else(|| format!("`{name}` is not known here"))
 }
 
 /// What a shader reads from a texture.
@@ -365,10 +393,9 @@ pub struct Level {
 
 /// Texel formats, by their WebGPU names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(try_from = "String", into = "String")]
 pub enum Format {
     /// 8 bits a channel, the premultiplied colour sRGB-encoded, alpha linear.
-    #[serde(rename = "rgba8unorm-srgb")]
     Rgba8UnormSrgb,
     /// 8 bits a channel, 0..1.
     Rgba8Unorm,
@@ -382,7 +409,30 @@ pub enum Format {
     Rgba32Sint,
 }
 
+impl From<Format> for String {
+    fn from(format: Format) -> String {
+        name_of(Format::NAMES, format)
+    }
+}
+
+impl TryFrom<String> for Format {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Format, String> {
+        named(Format::NAMES, &name)
+    }
+}
+
 impl Format {
+    const NAMES: &[(Format, &str)] = &[
+        (Format::Rgba8UnormSrgb, "rgba8unorm-srgb"),
+        (Format::Rgba8Unorm, "rgba8unorm"),
+        (Format::Rgba8Snorm, "rgba8snorm"),
+        (Format::Rgba16Float, "rgba16float"),
+        (Format::R32Sint, "r32sint"),
+        (Format::Rgba32Sint, "rgba32sint"),
+    ];
+
     /// Bytes a texel.
     pub fn bytes(self) -> u32 {
         match self {

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use texgraph_compiler::module::Loader;
-use texgraph_compiler::{Failure, Library, Options, check, compile};
+use texgraph_compiler::{Compiled, Failure, Library, Options, check, compile};
+use texgraph_runtime::{project::Project, resource};
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| Library::standard().expect("the library is right"));
 
@@ -45,7 +46,8 @@ pub fn files(folder: &Path, ending: &str) -> Vec<String> {
 pub fn stages() -> Vec<String> {
     let entries = fs::read_dir(root()).expect("the folder is there");
     let folders = entries.map(|entry| entry.expect("it can be read").path()).filter(|path| path.is_dir());
-    let mut names: Vec<String> = folders.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect();
+    let mut names: Vec<String> =
+        folders.filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect();
     names.sort();
     names
 }
@@ -61,11 +63,14 @@ impl Case {
     /// Every error file, in order.
     pub fn all() -> Vec<Case> {
         let stages = stages().into_iter().map(|stage| (files(&root().join(&stage), "tex"), stage));
-        stages.flat_map(|(names, stage)| names.into_iter().map(move |name| Case::read(&stage, name))).collect()
+        stages
+            .flat_map(|(names, stage)| names.into_iter().map(move |name| Case::read(&stage, name)))
+            .collect()
     }
 
     fn read(stage: &str, name: String) -> Case {
-        let text = fs::read_to_string(root().join(stage).join(format!("{name}.tex"))).expect("it can be read");
+        let text =
+            fs::read_to_string(root().join(stage).join(format!("{name}.tex"))).expect("it can be read");
         let head = text.lines().next().unwrap_or_default().to_owned();
         Case { stage: stage.to_owned(), name, head }
     }
@@ -98,11 +103,23 @@ impl Case {
         let loader = Folder { path: self.folder(), main: None };
         let main = format!("{}.tex", self.path());
         let failure = match self.head.strip_prefix("// ask: ") {
+            Some("load") => load(&main, &loader),
             Some(wish) => compile(&LIBRARY, &main, &loader, &asked(wish)).err(),
             None => check(&LIBRARY, &main, &loader).err(),
         };
         failure.unwrap_or_else(|| panic!("{}: nothing is wrong", self.path()))
     }
+}
+
+/// What only loading the resources finds.
+fn load(main: &str, loader: &Folder) -> Option<Failure> {
+    let Compiled { mut program, sources } = match compile(&LIBRARY, main, loader, &Options::default()) {
+        Ok(compiled) => compiled,
+        Err(failure) => return Some(failure),
+    };
+    let project = Project::new(&root().join(main), false);
+    let diagnostics = resource::load(&program.graph, &mut program.manifest, &project).err()?;
+    Some(Failure { sources, diagnostics })
 }
 
 fn asked(wish: &str) -> Options {
@@ -133,9 +150,12 @@ pub fn fenced(page: &str, info: &str) -> Option<String> {
 
 /// The codes of the grammar, and those in the sentences of the compiler.
 pub fn codes_in_use() -> BTreeSet<String> {
-    let mut codes: BTreeSet<String> = texgraph_grammar::SYNTAX_CODES.iter().map(|(code, _)| (*code).to_owned()).collect();
+    let mut codes: BTreeSet<String> =
+        texgraph_grammar::SYNTAX_CODES.iter().map(|(code, _)| (*code).to_owned()).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("compiler/src/diagnostic");
-    for file in files(&folder, "rs").into_iter().filter(|file| file != "codes" && file != "mod" && file != "render") {
+    for file in
+        files(&folder, "rs").into_iter().filter(|file| file != "codes" && file != "mod" && file != "render")
+    {
         let text = fs::read_to_string(folder.join(format!("{file}.rs"))).expect("it can be read");
         codes.extend(text.split('"').filter(|word| is_code(word)).map(str::to_owned));
     }
@@ -148,7 +168,8 @@ fn is_code(word: &str) -> bool {
 
 /// What no file of a few lines can show: one step beyond each limit, with its code.
 pub fn generated() -> Vec<(&'static str, String)> {
-    let texture = |body: &str| format!("texture t(uv: vec2) -> (color: color) {{\n    color = vec4({body})\n}}\n");
+    let texture =
+        |body: &str| format!("texture t(uv: vec2) -> (color: color) {{\n    color = vec4({body})\n}}\n");
     let shade = "node shade(x: float, k: float) -> (value: float) {\n    value = x * k\n}\n\n";
     let calls: Vec<String> = (0..=4_096).map(|i| format!("shade(uv.x, {i}.5)")).collect();
     let terms: Vec<String> = (2..70_000).map(|i| format!("k*{i}")).collect();
@@ -163,7 +184,8 @@ pub fn generated() -> Vec<(&'static str, String)> {
 pub fn sources() -> Vec<String> {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let folders = stages().into_iter().map(|stage| root().join(stage)).chain([examples]);
-    let files = folders.flat_map(|folder| files(&folder, "tex").into_iter().map(move |file| folder.join(file + ".tex")));
+    let files = folders
+        .flat_map(|folder| files(&folder, "tex").into_iter().map(move |file| folder.join(file + ".tex")));
     files.map(|file| fs::read_to_string(file).expect("it can be read")).collect()
 }
 

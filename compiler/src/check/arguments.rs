@@ -3,7 +3,7 @@
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;
 use super::{Checker, Frame};
-use crate::diagnostic::{Place, types as errors};
+use crate::diagnostic::{Place, arguments as sentences, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
 use crate::resource::{FieldKind, KINDS};
 use texgraph_grammar::syntax::{Dim, Input, Name};
@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
                 (Some(i), name) if slots[i].is_some() => {
                     let at = name.map_or(argument.place, |name| self.place(f, name.span));
                     let first = slots[i].as_ref().map_or(at, |first| first.place);
-                    errors::argument_twice(at, head.name, &head.inputs[i].name.text, first)
+                    sentences::argument_twice(at, head.name, &head.inputs[i].name.text, first)
                 }
                 (Some(i), _) => {
                     slots[i] = Some(argument);
@@ -98,11 +98,11 @@ impl<'a> Checker<'a> {
                 }
                 (None, Some(name)) => {
                     let near = self.near(&name.text, head.inputs.iter().map(|i| i.name.text.as_str()));
-                    errors::unknown_argument(self.place(f, name.span), head.name, &name.text, near)
+                    sentences::unknown_argument(self.place(f, name.span), head.name, &name.text, near)
                 }
                 (None, None) if fine => {
                     let inputs: Vec<&str> = head.inputs.iter().map(|input| input.name.text.as_str()).collect();
-                    errors::too_many_arguments(argument.place, head.name, &inputs)
+                    sentences::too_many_arguments(argument.place, head.name, &inputs)
                 }
                 // The first of several was reported.
                 (None, None) => continue,
@@ -113,7 +113,7 @@ impl<'a> Checker<'a> {
         for (input, slot) in head.inputs.iter().zip(&slots) {
             if fine && slot.is_none() && input.default.is_none() {
                 let ty = types::show(&input.ty);
-                self.report(f, errors::missing_argument(place, head.name, &input.name.text, &ty));
+                self.report(f, sentences::missing_argument(place, head.name, &input.name.text, &ty));
                 fine = false;
             }
         }
@@ -222,7 +222,7 @@ impl<'a> Checker<'a> {
             (Declared::Vector(scalar, width), wire) => {
                 self.coerce_named(f, &wire, (*scalar, *width), place, Some(input)).map_or(Wire::Unknown, Wire::Value)
             }
-            (Declared::Choice(words), Wire::Text(_)) => self.report(f, errors::quoted_choice(place, input, words)),
+            (Declared::Choice(words), Wire::Text(_)) => self.report(f, sentences::quoted_choice(place, input, words)),
             (Declared::Choice(words), wire) => {
                 let written = match &wire {
                     Wire::Word(word, _) => Some(word.as_str()),
@@ -230,7 +230,7 @@ impl<'a> Checker<'a> {
                 };
                 match written.filter(|word| words.iter().any(|w| w == word)) {
                     Some(word) => Wire::Word(word.to_owned(), place),
-                    None => self.report(f, errors::unknown_choice(place, input, words, written.unwrap_or_default())),
+                    None => self.report(f, sentences::unknown_choice(place, input, words, written.unwrap_or_default())),
                 }
             }
             (Declared::Resource(kind), Wire::Resource(resource)) if resource.kind == *kind => Wire::Resource(resource),

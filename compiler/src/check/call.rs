@@ -4,7 +4,7 @@ use super::arguments::{Bound, Given, Head};
 use super::types;
 use super::wire::{ArgumentKey, Key, Wire};
 use super::{Checker, Frame, Outcome};
-use crate::diagnostic::{Place, names, types as errors, unsupported};
+use crate::diagnostic::{Place, arguments as sentences, names, types as errors, unsupported};
 use crate::graph::{Axis, Level, Operation, Scalar, Type, Value};
 use crate::library::Callable;
 use crate::resource::{KINDS, LATER};
@@ -60,7 +60,7 @@ impl<'a> Checker<'a> {
         let at = self.place(f, call.name.span);
         let found = types::describe(&base.wire, |v| f.builder.ty(v));
         let views: Vec<String> = KINDS.iter().filter(|kind| kind.view.is_some()).map(|kind| format!("`{}`", kind.name)).collect();
-        let mut error = errors::bad_receiver(at, name, &found, &views);
+        let mut error = sentences::bad_receiver(at, name, &found, &views);
         if let Wire::Resource(resource) = &base.wire
             && let Some((field, _)) = resource.views.first()
         {
@@ -203,7 +203,7 @@ impl<'a> Checker<'a> {
         let accepted = heads.iter().filter_map(|(_, head)| head.inputs.first());
         let accepted: Vec<String> = accepted.map(|input| format!("`{}`", types::show(&input.ty))).collect();
         let at = first.map_or(place, |given| given.place);
-        self.report(f, errors::bad_receiver(at, &call.name.text, &found, &accepted))
+        self.report(f, sentences::bad_receiver(at, &call.name.text, &found, &accepted))
     }
 
     fn apply(
@@ -299,8 +299,8 @@ impl<'a> Checker<'a> {
                 let holds = !matches!(one.wire, Wire::None);
                 Wire::Value(f.builder.constant(crate::graph::Constant::bools(&[holds])))
             }
-            [] => self.report(f, errors::missing_argument(place, "given", "resource", "resource")),
-            [_, second, ..] => self.report(f, errors::too_many_arguments(second.place, "given", &["resource"])),
+            [] => self.report(f, sentences::missing_argument(place, "given", "resource", "resource")),
+            [_, second, ..] => self.report(f, sentences::too_many_arguments(second.place, "given", &["resource"])),
         }
     }
 
@@ -308,8 +308,8 @@ impl<'a> Checker<'a> {
         let [one] = given else {
             let name = if axis == Axis::X { "dx" } else { "dy" };
             let error = match given.get(1) {
-                Some(second) => errors::too_many_arguments(second.place, name, &["value"]),
-                None => errors::missing_argument(place, name, "value", "vec<n>"),
+                Some(second) => sentences::too_many_arguments(second.place, name, &["value"]),
+                None => sentences::missing_argument(place, name, "value", "vec<n>"),
             };
             return self.report(f, error);
         };
@@ -406,7 +406,7 @@ impl<'a> Checker<'a> {
                 Some(slot) => {
                     let first = slot.as_ref().map_or(place, |(_, first)| *first);
                     let input = argument.name.map_or(inputs[0], |name| name.text.as_str());
-                    return Some(self.report(f, errors::argument_twice(argument.place, name, input, first)));
+                    return Some(self.report(f, sentences::argument_twice(argument.place, name, input, first)));
                 }
                 None => return Some(self.view_argument_error(f, name, inputs, argument)),
             }
@@ -417,7 +417,7 @@ impl<'a> Checker<'a> {
         let scalar = if name == "sample" { Scalar::Float } else { Scalar::Int };
         let Some((at, at_place)) = slots[0].take() else {
             let wanted = types::name(Type::Vector(scalar, ty.coordinates()));
-            return Some(self.report(f, errors::missing_argument(place, name, inputs[0], &wanted)));
+            return Some(self.report(f, sentences::missing_argument(place, name, inputs[0], &wanted)));
         };
         let Some(at) = self.coordinate(f, &at, scalar, ty.coordinates(), at_place) else { return Some(Wire::Unknown) };
         let Ok(layer) = self.layer(f, ty, slots[1].take(), name, place) else { return Some(Wire::Unknown) };
@@ -434,9 +434,9 @@ impl<'a> Checker<'a> {
         let error = match argument.name {
             Some(written) => {
                 let near = self.near(&written.text, inputs.iter().copied());
-                errors::unknown_argument(self.place(f, written.span), name, &written.text, near)
+                sentences::unknown_argument(self.place(f, written.span), name, &written.text, near)
             }
-            None => errors::named_only(argument.place, name, inputs.get(1..).unwrap_or_default()),
+            None => sentences::named_only(argument.place, name, inputs.get(1..).unwrap_or_default()),
         };
         self.report(f, error)
     }
@@ -463,11 +463,11 @@ impl<'a> Checker<'a> {
         let array = ty.dimension == crate::graph::ViewDimension::D2Array;
         match slot {
             Some((_, at)) if !array => {
-                self.report(f, errors::no_layers(at, name));
+                self.report(f, sentences::no_layers(at, name));
                 Err(())
             }
             None if array => {
-                self.report(f, errors::missing_layer(place, name));
+                self.report(f, sentences::missing_layer(place, name));
                 Err(())
             }
             Some((wire, at)) => self.coerce_value(f, &wire, Scalar::Int, 1, at).map(Some).ok_or(()),

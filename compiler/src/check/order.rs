@@ -100,7 +100,11 @@ impl<'a> Free<'a> {
                 self.unbind(inputs.iter().map(|input| input.text.as_str()));
             }
             ExprKind::Fold(fold) => self.fold(fold),
-            ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Bool(_) | ExprKind::Text(_) | ExprKind::Color(_) => {}
+            ExprKind::Int(_)
+            | ExprKind::Float(_)
+            | ExprKind::Bool(_)
+            | ExprKind::Text(_)
+            | ExprKind::Color(_) => {}
         }
     }
 
@@ -119,8 +123,12 @@ impl<'a> Free<'a> {
 /// The names a statement binds.
 pub fn names_of(statement: &Statement) -> Vec<&str> {
     match statement {
-        Statement::Let { pattern: Pattern::Name(name), .. } | Statement::Assign { name, .. } => vec![&name.text],
-        Statement::Let { pattern: Pattern::Record(names, _), .. } => names.iter().map(|n| n.text.as_str()).collect(),
+        Statement::Let { pattern: Pattern::Name(name), .. } | Statement::Assign { name, .. } => {
+            vec![&name.text]
+        }
+        Statement::Let { pattern: Pattern::Record(names, _), .. } => {
+            names.iter().map(|n| n.text.as_str()).collect()
+        }
     }
 }
 

@@ -156,7 +156,8 @@ impl<'a> Checker<'a> {
         if f.node.is_none() {
             // Nodes that read them must not find them missing.
             let all: Vec<&'a str> = steps.iter().flat_map(|step| step.names()).collect();
-            self.globals[f.module].extend(all.into_iter().map(|name| (name.to_owned(), globals::Global::Unknown)));
+            self.globals[f.module]
+                .extend(all.into_iter().map(|name| (name.to_owned(), globals::Global::Unknown)));
         }
         let error = names::cycle(self.place(f, span), &names);
         self.report(f, error);

@@ -16,14 +16,24 @@ pub fn empty_grid(place: Place, columns: i32, rows: i32) -> Diagnostic {
 
 /// A grid for several files.
 pub fn grid_of_a_list(place: Place) -> Diagnostic {
-    Diagnostic::new("E0553", place, "a list of pictures has no grid", "each picture of the list is one pattern")
-        .help("leave `grid:` out, or give one picture")
+    Diagnostic::new(
+        "E0553",
+        place,
+        "a list of pictures has no grid",
+        "each picture of the list is one pattern",
+    )
+    .help("leave `grid:` out, or give one picture")
 }
 
 /// More layers than a texture has.
 pub fn too_many_patterns(place: Place, count: i64) -> Diagnostic {
-    Diagnostic::new("E0554", place, format!("these are {count} patterns, from 1 to 256 are possible"), "this many")
-        .help("a pattern is a layer of a texture array, which has at most 256")
+    Diagnostic::new(
+        "E0554",
+        place,
+        format!("these are {count} patterns, from 1 to 256 are possible"),
+        "this many",
+    )
+    .help("a pattern is a layer of a texture array, which has at most 256")
 }
 
 /// Rows of different lengths, or none.

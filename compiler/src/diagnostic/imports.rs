@@ -24,9 +24,14 @@ pub fn cycle(place: Place, paths: &[&str]) -> Diagnostic {
 
 /// One name from two files.
 pub fn clash(place: Place, name: &str, first: Place) -> Diagnostic {
-    Diagnostic::new("E0603", place, format!("`{name}` comes from two files"), "the second file that declares it")
-        .related(first, "the first declaration")
-        .help("import one of them under a name: `use \"…\" as other`")
+    Diagnostic::new(
+        "E0603",
+        place,
+        format!("`{name}` comes from two files"),
+        "the second file that declares it",
+    )
+    .related(first, "the first declaration")
+    .help("import one of them under a name: `use \"…\" as other`")
 }
 
 /// An alias that is taken.
@@ -37,6 +42,11 @@ pub fn alias_twice(place: Place, name: &str) -> Diagnostic {
 
 /// An item that an imported file does not declare.
 pub fn no_such_item(place: Place, alias: &str, name: &str, near: Option<String>) -> Diagnostic {
-    Diagnostic::new("E0605", place, format!("`{alias}` declares no `{name}`"), format!("not an item of `{alias}`"))
-        .maybe_help(near.map(|near| format!("did you mean `{alias}.{near}`?")))
+    Diagnostic::new(
+        "E0605",
+        place,
+        format!("`{alias}` declares no `{name}`"),
+        format!("not an item of `{alias}`"),
+    )
+    .maybe_help(near.map(|near| format!("did you mean `{alias}.{near}`?")))
 }

@@ -20,8 +20,13 @@ pub fn too_many_nodes(place: Place, name: &str) -> Diagnostic {
 
 /// More values than a texture may have.
 pub fn too_many_values(place: Place, name: &str) -> Diagnostic {
-    Diagnostic::new("E0402", place, format!("`{name}` holds more than {MAX_VALUES} operations"), "too large here")
-        .help("split the texture, or bake a part of it")
+    Diagnostic::new(
+        "E0402",
+        place,
+        format!("`{name}` holds more than {MAX_VALUES} operations"),
+        "too large here",
+    )
+    .help("split the texture, or bake a part of it")
 }
 
 /// A fold with more steps than this version writes out.
@@ -39,7 +44,11 @@ pub fn no_texture(place: Place) -> Diagnostic {
 /// A texture asked for by a name that the file does not have.
 pub fn no_such_texture(place: Place, name: &str, known: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0802", place, format!("the file has no texture `{name}`"), "in this file")
-        .help(if known.is_empty() { "it declares none".to_owned() } else { format!("its textures are {known}") })
+        .help(if known.is_empty() {
+            "it declares none".to_owned()
+        } else {
+            format!("its textures are {known}")
+        })
         .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
 }
 

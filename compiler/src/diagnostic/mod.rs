@@ -4,6 +4,7 @@
 //! (`syntax`, `names`, `types`, …), each a function that makes the diagnostic; the layout lives in
 //! [`render`], and the long explanations in `pages/`, listed by [`codes`].
 
+pub mod arguments;
 pub mod codes;
 pub mod constructors;
 pub mod imports;
@@ -37,7 +38,12 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// With a label, and nothing else yet.
-    pub fn new(code: &'static str, place: Place, message: impl Into<String>, label: impl Into<String>) -> Diagnostic {
+    pub fn new(
+        code: &'static str,
+        place: Place,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) -> Diagnostic {
         Diagnostic {
             code,
             message: message.into(),

@@ -65,8 +65,9 @@ pub fn unknown_value(place: Place, name: &str, near: Option<String>) -> Diagnost
 
 /// An alias that is missing: a file is imported, but its items joined ours.
 pub fn missing_alias(place: Place, name: &str) -> Diagnostic {
-    unknown_value(place, name, None)
-        .help(format!("the items of that file are used without a prefix, or import it by name: `use \"…\" as {name}`"))
+    unknown_value(place, name, None).help(format!(
+        "the items of that file are used without a prefix, or import it by name: `use \"…\" as {name}`"
+    ))
 }
 
 /// A node that nobody declared.
@@ -102,14 +103,17 @@ pub fn unknown_field(place: Place, what: &str, name: &str, near: Option<String>)
 
 /// An assignment to something that is no output.
 pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>) -> Diagnostic {
-    Diagnostic::new("E0106", place, format!("`{node}` has no output `{name}`"), "not an output")
-        .maybe_help(did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))))
+    Diagnostic::new("E0106", place, format!("`{node}` has no output `{name}`"), "not an output").maybe_help(
+        did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
+    )
 }
 
 /// An assignment in a fold to something that is no accumulator.
 pub fn no_such_accumulator(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0106", place, format!("the fold has no accumulator `{name}`"), "not in its head")
-        .maybe_help(did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))))
+        .maybe_help(
+            did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
+        )
 }
 
 /// An output without a value.

@@ -32,8 +32,13 @@ pub fn default_outside_range(place: Place, name: &str, range: Place) -> Diagnost
 
 /// A range that holds nothing.
 pub fn empty_range(place: Place, name: &str) -> Diagnostic {
-    Diagnostic::new("E0305", place, format!("the range of `{name}` is empty"), "the end lies before the start")
-        .help("write the smaller number first: `in 0.0..=1.0`")
+    Diagnostic::new(
+        "E0305",
+        place,
+        format!("the range of `{name}` is empty"),
+        "the end lies before the start",
+    )
+    .help("write the smaller number first: `in 0.0..=1.0`")
 }
 
 /// A choice between things that are not values, by a condition that is not known.

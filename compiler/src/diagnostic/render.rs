@@ -128,7 +128,8 @@ impl<'a> Message<'a> {
         };
         let primary = span(diagnostic.place, true, &diagnostic.label);
         let related = diagnostic.related.iter().map(|(place, label)| span(*place, false, label));
-        let help = diagnostic.help.iter().map(|help| Child { message: help, level: "help", spans: Vec::new() });
+        let help =
+            diagnostic.help.iter().map(|help| Child { message: help, level: "help", spans: Vec::new() });
         Message {
             message: &diagnostic.message,
             code: Code { code: diagnostic.code, explanation: super::codes::explain(diagnostic.code) },
@@ -187,7 +188,9 @@ impl Shown<'_> {
     /// From 1; columns in characters.
     fn line_and_column(&self, file: u32, offset: u32) -> (usize, usize) {
         let (file, offset) = (file as usize, offset as usize);
-        let (Some(source), Ok(line)) = (self.sources.0.get(file), self.line_index(file, offset)) else { return (1, 1) };
+        let (Some(source), Ok(line)) = (self.sources.0.get(file), self.line_index(file, offset)) else {
+            return (1, 1);
+        };
         let start = self.lines.get(file).and_then(|lines| lines.get(line)).copied().unwrap_or(0);
         let before = source.text.get(start..offset).unwrap_or_default();
         (line + 1, before.chars().count() + 1)

@@ -27,7 +27,9 @@ fn mend(found: &str, expected: &[&str]) -> Option<String> {
             format!("did you mean `{near}`?")
         }
         "," if wants("`=`") => "several names stand in brackets: `let (a, b) = …`".to_owned(),
-        "(" if wants("an assignment") => "names for several outputs begin with `let`: `let (a, b) = …`".to_owned(),
+        "(" if wants("an assignment") => {
+            "names for several outputs begin with `let`: `let (a, b) = …`".to_owned()
+        }
         "in" if wants("`=`") => "a param has a default: `param name: float = 1.0 in 0.0..=2.0`".to_owned(),
         "=" if wants("`{`") => "equality is written `==`".to_owned(),
         "=" if wants("`:`") => "a param has a type: `param name: float = 1.0`".to_owned(),

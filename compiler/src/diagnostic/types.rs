@@ -35,7 +35,8 @@ fn shape(ty: &str) -> Option<(char, usize)> {
         "float" => ('f', 1),
         "int" => ('i', 1),
         _ => {
-            let (scalar, width) = ty.strip_prefix("ivec").map(|w| ('i', w)).or(ty.strip_prefix("vec").map(|w| ('f', w)))?;
+            let (scalar, width) =
+                ty.strip_prefix("ivec").map(|w| ('i', w)).or(ty.strip_prefix("vec").map(|w| ('f', w)))?;
             (scalar, width.parse().ok()?)
         }
     })
@@ -103,57 +104,6 @@ pub fn widths_differ(place: Place, first: u8, second: u8, first_place: Place) ->
     .help("only a scalar spreads to a vector: take components with `.xy`, or build a vector with `vec3(v, 0.0)`")
 }
 
-/// More arguments than inputs.
-pub fn too_many_arguments(place: Place, name: &str, inputs: &[&str]) -> Diagnostic {
-    let takes = match inputs.len() {
-        0 => "no inputs".to_owned(),
-        1 => "one input".to_owned(),
-        count => format!("{count} inputs"),
-    };
-    let listed = (!inputs.is_empty()).then(|| format!("it takes {}", list(inputs)));
-    Diagnostic::new("E0204", place, format!("`{name}` has {takes}"), "one argument too many").maybe_help(listed)
-}
-
-/// `a`, `b`, `c`
-fn list(names: &[impl AsRef<str>]) -> String {
-    names.iter().map(|name| format!("`{}`", name.as_ref())).collect::<Vec<_>>().join(", ")
-}
-
-/// An argument of `sample` or `texel` that stands without its name.
-pub fn named_only(place: Place, name: &str, inputs: &[&str]) -> Diagnostic {
-    let names = inputs.iter().map(|input| format!("`{input}: …`")).collect::<Vec<_>>().join(", ");
-    too_many_arguments(place, name, &[]).because(format!("only the first argument of `{name}` goes by position"))
-        .help(format!("name the others: {names}"))
-}
-
-/// An input without argument and default.
-pub fn missing_argument(place: Place, name: &str, input: &str, ty: &str) -> Diagnostic {
-    Diagnostic::new("E0205", place, format!("`{name}` needs `{input}`"), format!("no argument for `{input}: {ty}`"))
-        .help(format!("add it by position, or as `{input}: …`"))
-}
-
-/// The layer that a layered view needs.
-pub fn missing_layer(place: Place, name: &str) -> Diagnostic {
-    missing_argument(place, name, "layer", "int").help("say which layer is meant: `layer: …`")
-}
-
-/// A layer of a view that has none.
-pub fn no_layers(place: Place, name: &str) -> Diagnostic {
-    unknown_argument(place, name, "layer", None).help("only layered views, such as those of `patterns`, have layers")
-}
-
-/// A named argument that is no input.
-pub fn unknown_argument(place: Place, name: &str, input: &str, near: Option<String>) -> Diagnostic {
-    Diagnostic::new("E0206", place, format!("`{name}` has no input `{input}`"), "no such input")
-        .maybe_help(near.map(|near| format!("did you mean `{near}:`?")))
-}
-
-/// An input that is given two arguments.
-pub fn argument_twice(place: Place, name: &str, input: &str, first: Place) -> Diagnostic {
-    Diagnostic::new("E0207", place, format!("`{input}` of `{name}` is given twice"), "the second")
-        .related(first, "the first")
-}
-
 /// Operands or arguments that no overload takes.
 pub fn no_overload(place: Place, name: &str, found: &[String], accepted: &[String]) -> Diagnostic {
     let found = found.iter().map(|ty| format!("`{ty}`")).collect::<Vec<_>>().join(" and ");
@@ -180,33 +130,25 @@ pub fn destructuring(place: Place, names: usize, outputs: &[String]) -> Diagnost
 
 /// A name list for a single value.
 pub fn not_a_record(place: Place) -> Diagnostic {
-    Diagnostic::new("E0224", place, "only a node with several outputs can be taken apart", "this is a single value")
-        .help("write `let name = …`")
+    Diagnostic::new(
+        "E0224",
+        place,
+        "only a node with several outputs can be taken apart",
+        "this is a single value",
+    )
+    .help("write `let name = …`")
 }
 
 /// Several outputs where one value is wanted.
 pub fn record_as_value(place: Place, outputs: &[String]) -> Diagnostic {
     let help = outputs.first().map(|first| format!("take one of its outputs: `.{first}`"));
-    Diagnostic::new("E0213", place, "this has several outputs, one value is wanted", format!("its outputs are {}", list(outputs)))
-        .maybe_help(help)
-}
-
-/// A bare word that is no choice.
-pub fn unknown_choice(place: Place, input: &str, words: &[String], found: &str) -> Diagnostic {
-    let near = super::names::nearest(found, words.iter().map(String::as_str));
-    Diagnostic::new("E0214", place, format!("`{input}` is one of {}", list(words)), "not one of them")
-        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
-}
-
-/// A choice written as a string.
-pub fn quoted_choice(place: Place, input: &str, words: &[String]) -> Diagnostic {
-    unknown_choice(place, input, words, "").help("a choice is a bare word: write it without quotes")
-}
-
-/// A receiver whose type no node of that name takes first.
-pub fn bad_receiver(place: Place, name: &str, found: &str, accepted: &[String]) -> Diagnostic {
-    Diagnostic::new("E0215", place, format!("no `{name}` takes {found} first"), format!("given {found}"))
-        .help(format!("`{name}` is for {}", accepted.join(", ")))
+    Diagnostic::new(
+        "E0213",
+        place,
+        "this has several outputs, one value is wanted",
+        format!("its outputs are {}", list(outputs)),
+    )
+    .maybe_help(help)
 }
 
 /// An int that does not fit.
@@ -231,13 +173,23 @@ pub fn unknown_texture_input(place: Place, name: &str, known: &str, near: Option
 
 /// A known input or output with another type than its own.
 pub fn fixed_type(place: Place, name: &str, wanted: &str) -> Diagnostic {
-    Diagnostic::new("E0218", place, format!("`{name}` of a texture is `{wanted}`"), format!("write `{name}: {wanted}`"))
+    Diagnostic::new(
+        "E0218",
+        place,
+        format!("`{name}` of a texture is `{wanted}`"),
+        format!("write `{name}: {wanted}`"),
+    )
 }
 
 /// A vector from too many or too few parts.
 pub fn component_count(place: Place, name: &str, wanted: u8, found: usize) -> Diagnostic {
-    Diagnostic::new("E0219", place, format!("`{name}` has {wanted} components, these are {found}"), "the parts")
-        .help(format!("give {wanted} in all, or a single scalar for every component"))
+    Diagnostic::new(
+        "E0219",
+        place,
+        format!("`{name}` has {wanted} components, these are {found}"),
+        "the parts",
+    )
+    .help(format!("give {wanted} in all, or a single scalar for every component"))
 }
 
 /// A dimension that nobody declared, or that no argument binds.
@@ -265,13 +217,19 @@ pub fn bad_dimension(place: Place, found: u32) -> Diagnostic {
 
 /// Something that is no value where one is wanted.
 pub fn not_a_value(place: Place, what: &str) -> Diagnostic {
-    Diagnostic::new("E0222", place, format!("{what} is not a value"), "a number, vector or bool is wanted here")
+    Diagnostic::new(
+        "E0222",
+        place,
+        format!("{what} is not a value"),
+        "a number, vector or bool is wanted here",
+    )
 }
 
 /// A resource where a value is wanted, with the nodes that read it.
 pub fn resource_as_value(place: Place, kind: &str, nodes: &[String]) -> Diagnostic {
     let calls = nodes.iter().map(|node| format!("`.{node}(…)`")).collect::<Vec<_>>().join(" or ");
-    not_a_value(place, &format!("`{kind}`")).maybe_help((!nodes.is_empty()).then(|| format!("read it with {calls}")))
+    not_a_value(place, &format!("`{kind}`"))
+        .maybe_help((!nodes.is_empty()).then(|| format!("read it with {calls}")))
 }
 
 /// A resource where another thing is wanted, or the other way round.
@@ -281,12 +239,26 @@ pub fn resource_mismatch(place: Place, input: &str, wanted: &str, found: &str) -
 
 /// A comparison of what has no order.
 pub fn not_a_scalar(place: Place, found: &str) -> Diagnostic {
-    Diagnostic::new("E0225", place, format!("a single number is wanted, this is `{found}`"), format!("`{found}`"))
-        .help("take a component with `.x`, or a `length`")
+    Diagnostic::new(
+        "E0225",
+        place,
+        format!("a single number is wanted, this is `{found}`"),
+        format!("`{found}`"),
+    )
+    .help("take a component with `.x`, or a `length`")
 }
 
 /// A type that can't stand where it stands.
 pub fn type_not_allowed(place: Place, ty: &str, here: &str) -> Diagnostic {
-    let help = if ty == "bool" { "write a number: `if c { 1.0 } else { 0.0 }`" } else { "numbers, vectors and colours can" };
+    let help = if ty == "bool" {
+        "write a number: `if c { 1.0 } else { 0.0 }`"
+    } else {
+        "numbers, vectors and colours can"
+    };
     Diagnostic::new("E0226", place, format!("`{ty}` can't be the type of {here}"), "not here").help(help)
+}
+
+/// `a`, `b`, `c`
+pub(super) fn list(names: &[impl AsRef<str>]) -> String {
+    names.iter().map(|name| format!("`{}`", name.as_ref())).collect::<Vec<_>>().join(", ")
 }

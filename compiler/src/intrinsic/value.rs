@@ -43,7 +43,7 @@ pub fn divide(x: f32, y: f32) -> f32 {
 
 /// `x − y·floor(x / y)`, 0 where `y` is 0.
 pub fn remainder(x: f32, y: f32) -> f32 {
-    if y == 0.0 { 0.0 } else { x - y * libm::floorf(x / y) }
+    if y == 0.0 { 0.0 } else { x - finite(y * libm::floorf(finite(x / y))) }
 }
 
 /// The quotient rounded down; 0 for a divisor of 0, and `MIN / -1` is `MIN`.
@@ -86,7 +86,7 @@ pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     if low == high {
         return if x < low { 0.0 } else { 1.0 };
     }
-    let t = finite((x - low) / (high - low)).clamp(0.0, 1.0);
+    let t = finite(finite(x - low) / finite(high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
