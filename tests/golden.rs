@@ -104,6 +104,8 @@ fn an_expression_and_its_parts_named_differently_give_the_same_shader() {
     let two = shader(
         "texture t(uv: vec2) -> (height: float) { height = a + b let b = sin(uv.x * 3.0) let a = sin(uv.x * 3.0) }",
     );
-    let count = |graph: &texgraph_compiler::graph::Graph| graph.functions.iter().map(|f| f.values.len()).sum::<usize>();
+    let count = |graph: &texgraph_compiler::graph::Graph| {
+        graph.functions.iter().map(|f| f.values.len()).sum::<usize>()
+    };
     assert_eq!(count(&one), count(&two));
 }

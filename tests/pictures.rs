@@ -20,7 +20,8 @@ const TOLERANCE: f32 = 2.0 / 255.0;
 const AGREE: f64 = 0.999;
 /// Views of every texture: whole, four times nearer, and far.
 /// Their bounds keep pixel centres off the borders of cells, where rounding decides.
-const ZOOMS: [[f64; 4]; 3] = [[0.0, 0.0, 1.0, 1.0], [0.3037, 0.4019, 0.5541, 0.6523], [-1.7013, -2.1091, 2.3177, 1.9099]];
+const ZOOMS: [[f64; 4]; 3] =
+    [[0.0, 0.0, 1.0, 1.0], [0.3037, 0.4019, 0.5541, 0.6523], [-1.7013, -2.1091, 2.3177, 1.9099]];
 /// The side of the pictures that are compared.
 const SIDE: u32 = 251;
 
@@ -57,7 +58,8 @@ fn stem(file: &Path) -> String {
 fn files() -> Vec<PathBuf> {
     let folders = ["examples", "tests/golden"].map(|folder| std::fs::read_dir(root().join(folder)));
     let entries = folders.into_iter().flatten().flatten().flatten().map(|entry| entry.path());
-    let mut files: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|e| e == "tex")).collect();
+    let mut files: Vec<PathBuf> =
+        entries.filter(|path| path.extension().is_some_and(|e| e == "tex")).collect();
     files.sort();
     files
 }
@@ -112,7 +114,8 @@ fn agreement(ours: &Picture, theirs: &Picture) -> Result<f64, Failed> {
         return Ok(agreeing as f64 / ours.pixels.len() as f64);
     }
     let (ours, theirs) = (written(ours)?, written(theirs)?);
-    let near = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| a.0.iter().zip(b.0).all(|(a, b)| a.abs_diff(b) <= 2);
+    let near =
+        |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| a.0.iter().zip(b.0).all(|(a, b)| a.abs_diff(b) <= 2);
     let agreeing = ours.pixels().zip(theirs.pixels()).filter(|pair| near(*pair)).count();
     Ok(agreeing as f64 / f64::from(ours.width() * ours.height()))
 }
@@ -126,7 +129,11 @@ fn written(picture: &Picture) -> Result<image::RgbaImage, Failed> {
 /// Luma as it is shown: of sRGB-encoded channels, 0 to 1.
 fn luma(picture: &Picture) -> Vec<f32> {
     let encode = |c: f32| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    picture.pixels.iter().map(|[r, g, b, _]| 0.2126 * encode(*r) + 0.7152 * encode(*g) + 0.0722 * encode(*b)).collect()
+    picture
+        .pixels
+        .iter()
+        .map(|[r, g, b, _]| 0.2126 * encode(*r) + 0.7152 * encode(*g) + 0.0722 * encode(*b))
+        .collect()
 }
 
 /// The picture of the README: 64 cells a side, 16 pixels each.
@@ -137,7 +144,8 @@ fn tiling_has_no_grid_and_no_period() -> Result<(), Failed> {
     let (mut across, mut inside) = (Vec::new(), Vec::new());
     for y in 0..side {
         for x in 1..side {
-            let steps = [luma[y * side + x] - luma[y * side + x - 1], luma[x * side + y] - luma[(x - 1) * side + y]];
+            let steps =
+                [luma[y * side + x] - luma[y * side + x - 1], luma[x * side + y] - luma[(x - 1) * side + y]];
             let kind = if x % cell == 0 { &mut across } else { &mut inside };
             kind.extend(steps.map(f32::abs));
         }
@@ -147,7 +155,10 @@ fn tiling_has_no_grid_and_no_period() -> Result<(), Failed> {
     let (peak, at) = highest_repeat(&luma, side, cell);
     println!("gradient across borders over inside {ratio:.3}, highest repeat {peak:.3} at {at:?} cells");
     if ratio > 1.1 || peak > 0.1 {
-        return Err(format!("border ratio {ratio:.3} (at most 1.1), repeat {peak:.3} at {at:?} (at most 0.1)").into());
+        return Err(format!(
+            "border ratio {ratio:.3} (at most 1.1), repeat {peak:.3} at {at:?} (at most 0.1)"
+        )
+        .into());
     }
     Ok(())
 }

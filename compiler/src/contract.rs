@@ -4,8 +4,8 @@
 
 use crate::graph::{self, Constant, Graph, Operation, ParamId, Scalar, ViewDimension, ViewId};
 use crate::manifest::{
-    self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source, Texture, Type,
-    Uniform, Value,
+    self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source,
+    Texture, Type, Uniform, Value,
 };
 use crate::{Options, naming};
 use std::collections::BTreeSet;
@@ -122,14 +122,18 @@ fn inputs(entry: &graph::Function, form: Form, block: &mut Block) -> Vec<Input> 
     let mut location = 0;
     let mut source = |slot: &graph::Slot| match form {
         Form::Library => Source::Member,
-        Form::Complete if PER_DRAW.contains(&slot.name.as_str()) => Source::Uniform(block.add(slot.ty.width())),
+        Form::Complete if PER_DRAW.contains(&slot.name.as_str()) => {
+            Source::Uniform(block.add(slot.ty.width()))
+        }
         Form::Complete => {
             location += 1;
             Source::Varying(location - 1)
         }
     };
     let inputs = entry.inputs.iter();
-    inputs.map(|slot| Input { name: slot.name.clone(), ty: public_type(slot.ty), source: source(slot) }).collect()
+    inputs
+        .map(|slot| Input { name: slot.name.clone(), ty: public_type(slot.ty), source: source(slot) })
+        .collect()
 }
 
 fn outputs(entry: &graph::Function) -> Vec<Output> {

@@ -11,7 +11,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&lowered.module).map_err(|error| describe(&error))?;
-    let text = wgsl::write_string(&lowered.module, &info, wgsl::WriterFlags::empty()).map_err(|e| describe(&e))?;
+    let text =
+        wgsl::write_string(&lowered.module, &info, wgsl::WriterFlags::empty()).map_err(|e| describe(&e))?;
     // The writer breaks the line behind attributes.
     let text = text.replace(") \nvar", ") var").replace("@fragment \n", "@fragment\n");
     Ok(lowered.names.apply(&text, &lowered.results))

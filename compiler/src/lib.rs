@@ -86,14 +86,20 @@ pub struct Compiled {
 ///
 /// # Errors
 /// Every error of the file and what it imports, as far as the texture needs it.
-pub fn compile(library: &Library, main: &str, loader: &dyn Loader, options: &Options) -> Result<Compiled, Failure> {
+pub fn compile(
+    library: &Library,
+    main: &str,
+    loader: &dyn Loader,
+    options: &Options,
+) -> Result<Compiled, Failure> {
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
     let (graph, label) = checked(library, &modules, options).map_err(fail)?;
     let fail = |diagnostic| Failure { sources: modules.sources.clone(), diagnostics: vec![diagnostic] };
     let graph = pass::run(graph).map_err(fail)?;
     let manifest = contract::manifest(&graph, &label, options);
-    let wgsl = emit::wgsl(&lower::lower(&graph, &manifest)).map_err(|why| fail(limits::bug(main_place(&modules), &why)))?;
+    let wgsl = emit::wgsl(&lower::lower(&graph, &manifest))
+        .map_err(|why| fail(limits::bug(main_place(&modules), &why)))?;
     Ok(Compiled { program: Program { graph, manifest, wgsl }, sources: modules.sources })
 }
 
@@ -134,7 +140,11 @@ fn main_place(modules: &Modules) -> Place {
 }
 
 /// The graph of the chosen texture with its documentation.
-fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<(Graph, String), Vec<Diagnostic>> {
+fn checked(
+    library: &Library,
+    modules: &Modules,
+    options: &Options,
+) -> Result<(Graph, String), Vec<Diagnostic>> {
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     let key = checker.texture(options.texture.as_deref());
@@ -158,8 +168,10 @@ fn choose_outputs(graph: &mut Graph, options: &Options, place: Place) -> Result<
     let (Some(wanted), Some(entry)) = (&options.outputs, graph.functions.last_mut()) else { return Ok(()) };
     for name in wanted {
         if !entry.outputs.iter().any(|(slot, _)| slot.name == *name) {
-            let known: Vec<String> = entry.outputs.iter().map(|(slot, _)| format!("`{}`", slot.name)).collect();
-            let near = diagnostic::names::nearest(name, entry.outputs.iter().map(|(slot, _)| slot.name.as_str()));
+            let known: Vec<String> =
+                entry.outputs.iter().map(|(slot, _)| format!("`{}`", slot.name)).collect();
+            let near =
+                diagnostic::names::nearest(name, entry.outputs.iter().map(|(slot, _)| slot.name.as_str()));
             return Err(limits::no_such_texture_output(place, name, &known.join(", "), near));
         }
     }

@@ -97,7 +97,8 @@ impl Library {
     }
 
     fn add_signature(&mut self, name: &str, text: &str) -> Result<(), String> {
-        let signature = texgraph_grammar::parse_signature(text).map_err(|e| format!("{name}: {text}: {e}"))?;
+        let signature =
+            texgraph_grammar::parse_signature(text).map_err(|e| format!("{name}: {text}: {e}"))?;
         self.signatures.push(signature);
         Ok(())
     }
@@ -119,7 +120,8 @@ impl Library {
 
     /// Every name that can be called, in order.
     pub fn callable_names(&self) -> Vec<&str> {
-        let mut names: Vec<&str> = self.callables.keys().map(String::as_str).filter(|n| !n.starts_with('_')).collect();
+        let mut names: Vec<&str> =
+            self.callables.keys().map(String::as_str).filter(|n| !n.starts_with('_')).collect();
         names.sort_unstable();
         names
     }

@@ -91,7 +91,11 @@ struct Open {
 ///
 /// # Errors
 /// Every syntax error and every import that fails, together with the texts to show them in.
-pub fn load(main: &str, loader: &dyn Loader, library: &Library) -> Result<Modules, (Sources, Vec<Diagnostic>)> {
+pub fn load(
+    main: &str,
+    loader: &dyn Loader,
+    library: &Library,
+) -> Result<Modules, (Sources, Vec<Diagnostic>)> {
     let mut walk = Walk {
         sources: library.sources().clone(),
         modules: library.modules().to_vec(),
@@ -178,7 +182,12 @@ impl Walk {
 
     fn close(&mut self, open: Open) {
         self.seen.insert(open.path.clone(), Some(self.modules.len()));
-        self.modules.push(Module { file: open.file, path: open.path, tree: open.tree, imports: open.imports });
+        self.modules.push(Module {
+            file: open.file,
+            path: open.path,
+            tree: open.tree,
+            imports: open.imports,
+        });
     }
 
     /// A path that is being followed already, or one that failed before (which was reported).

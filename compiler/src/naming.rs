@@ -114,7 +114,8 @@ impl Names {
             let (token, after) = from.split_at(end);
             function += usize::from(token == "fn");
             let result = token.strip_prefix("_e").and_then(|n| n.parse::<u32>().ok());
-            let result = result.and_then(|n| results.get(function.wrapping_sub(1))?.get(&n)).map(String::as_str);
+            let result =
+                result.and_then(|n| results.get(function.wrapping_sub(1))?.get(&n)).map(String::as_str);
             out.push_str(self.get(token).or(result).unwrap_or(token));
             // A number's suffix or exponent is no name: skip what directly follows a digit.
             rest = after;

@@ -222,8 +222,18 @@ pub static KINDS: &[Kind] = &[
 ];
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] =
-    &["images", "volume", "probability", "materials", "exemplar", "sprites", "positions", "pixel_map", "ramp", "bake"];
+pub const LATER: &[&str] = &[
+    "images",
+    "volume",
+    "probability",
+    "materials",
+    "exemplar",
+    "sprites",
+    "positions",
+    "pixel_map",
+    "ramp",
+    "bake",
+];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     a.isotropic()?;

@@ -29,7 +29,8 @@ fn name(mut n: usize) -> String {
 
 /// A chain of nodes that call each other.
 fn nodes(count: usize, body: impl Fn(usize) -> String) -> String {
-    let chain: String = (0..count).map(|i| format!("node f{i}(x: float) -> (y: float) {{ {} }}\n", body(i))).collect();
+    let chain: String =
+        (0..count).map(|i| format!("node f{i}(x: float) -> (y: float) {{ {} }}\n", body(i))).collect();
     format!("{chain}node f{count}(x: float) -> (y: float) {{ y = x }}\n{}", height("f0(uv.x)"))
 }
 
@@ -46,7 +47,8 @@ fn a_hundred_thousand_methods() {
 #[test]
 fn fifty_thousand_lets_in_reverse() {
     let lets: String = (1..=50_000).rev().map(|i| format!("let {}={}+1\n", name(i), name(i - 1))).collect();
-    let text = format!("texture t(uv: vec2) -> (height: float) {{height={}\n{lets}let w=uv.x}}", name(50_000));
+    let text =
+        format!("texture t(uv: vec2) -> (height: float) {{height={}\n{lets}let w=uv.x}}", name(50_000));
     let program = compiled(text).expect("compiles").program;
     let entry = program.graph.function(program.graph.entry());
     assert!(entry.values.len() > 50_000, "one addition for each `let`");
@@ -95,6 +97,12 @@ fn values_are_bounded_at_200000() {
     assert!(many.len() < 1 << 20);
     let text = format!("texture t(uv: vec2) -> (height: float) {{ let {many} height = y }}");
     assert_eq!(codes(compiled(text)), ["E0402"]);
+    // The bound is the texture's, not a function's.
+    let long = (0..30_000).map(|i| format!("*{i}")).collect::<String>();
+    let node = |i: usize| format!("node f{i}(x: float) -> (y: float) {{ y = x{long}+{i} }}\n");
+    let text = (0..4).map(node).collect::<String>() + &height("f0(uv.x) + f1(uv.x) + f2(uv.x) + f3(uv.x)");
+    assert!(text.len() < 1 << 20, "{}", text.len());
+    assert_eq!(codes(compiled(text)), ["E0402"]);
 }
 
 #[test]
@@ -105,11 +113,16 @@ fn a_node_that_calls_itself_is_one_error() {
 
 #[test]
 fn nesting_is_bounded_and_never_overflows() {
-    for (open, close) in [("(", ")"), ("abs(", ")"), ("if uv.x<0.5{1}else{", "}"), ("-", ""), ("vec2(", ").x")] {
+    for (open, close) in
+        [("(", ")"), ("abs(", ")"), ("if uv.x<0.5{1}else{", "}"), ("-", ""), ("vec2(", ").x")]
+    {
         for depth in [60, 100, 127, 128, 129, 1_000, 50_000] {
             let text = height(&format!("{}uv.x{}", open.repeat(depth), close.repeat(depth)));
             let codes = codes(compiled(text));
-            assert!(codes.len() <= 1 && codes.iter().all(|code| ["E0001", "E0002"].contains(code)), "{open} {depth}: {codes:?}");
+            assert!(
+                codes.len() <= 1 && codes.iter().all(|code| ["E0001", "E0002"].contains(code)),
+                "{open} {depth}: {codes:?}"
+            );
         }
     }
 }

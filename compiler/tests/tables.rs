@@ -99,7 +99,10 @@ fn what_a_row_expands_to_is_worth_the_same() {
                 let found = builder.as_constant(expanded).expect("constants fold");
                 let wanted = intrinsic.evaluate(&arguments);
                 let name = intrinsic.row().name;
-                assert!(alike(&found, &wanted), "{name} of {arguments:?}: {found:?}, the row says {wanted:?}");
+                assert!(
+                    alike(&found, &wanted),
+                    "{name} of {arguments:?}: {found:?}, the row says {wanted:?}"
+                );
             }
         }
     }
@@ -161,7 +164,8 @@ fn derivatives_are_slopes() {
             .iter()
             .enumerate()
             .map(|(input, c)| {
-                let slopes: Vec<f32> = (0..c.width()).map(|i| at(input, i, 1.0) - at(input, i, 0.0)).collect();
+                let slopes: Vec<f32> =
+                    (0..c.width()).map(|i| at(input, i, 1.0) - at(input, i, 0.0)).collect();
                 Constant::floats(&slopes)
             })
             .collect();

@@ -38,25 +38,13 @@ type Guess = Option<SyntaxError>;
 
 /// Says what is wrong with a piece that pest could not read.
 pub(crate) fn explain(scan: &Scan<'_>, tokens: Range<usize>, failure: Failure) -> SyntaxError {
-    let index = scan
-        .tokens
-        .partition_point(|token| token.span.end as usize <= failure.at);
+    let index = scan.tokens.partition_point(|token| token.span.end as usize <= failure.at);
     // Behind the last token stands nothing, which is no mark that anything would ask for.
     let end = Span::new(scan.source.len(), scan.source.len());
-    let end = Token {
-        kind: TokenKind::Symbol,
-        span: end,
-    };
+    let end = Token { kind: TokenKind::Symbol, span: end };
     let token = scan.tokens.get(index).copied().unwrap_or(end);
     let text = scan.text(token);
-    let place = Place {
-        scan,
-        tokens,
-        index,
-        token,
-        text,
-        expected: &failure.expected,
-    };
+    let place = Place { scan, tokens, index, token, text, expected: &failure.expected };
     place
         .character()
         .or_else(|| place.literal())
@@ -88,28 +76,18 @@ fn unclosed(scan: &Scan<'_>, tokens: Range<usize>) -> Guess {
         "[" => ('[', ']'),
         _ => ('{', '}'),
     };
-    Some(SyntaxError {
-        kind: Kind::Unclosed { open, close },
-        span: token.span,
-    })
+    Some(SyntaxError { kind: Kind::Unclosed { open, close }, span: token.span })
 }
 
 impl<'s> Place<'_, 's> {
     fn here(&self, kind: Kind) -> Guess {
-        Some(SyntaxError {
-            kind,
-            span: self.token.span,
-        })
+        Some(SyntaxError { kind, span: self.token.span })
     }
 
     /// The token some places before or after, within the piece.
     fn at(&self, offset: isize) -> Option<Token> {
         let index = self.index.checked_add_signed(offset)?;
-        self.scan
-            .tokens
-            .get(index)
-            .copied()
-            .filter(|_| index >= self.tokens.start)
+        self.scan.tokens.get(index).copied().filter(|_| index >= self.tokens.start)
     }
 
     fn text_at(&self, offset: isize) -> &'s str {
@@ -121,15 +99,12 @@ impl<'s> Place<'_, 's> {
     }
 
     fn touches_previous(&self) -> bool {
-        self.at(-1)
-            .is_some_and(|before| before.span.end == self.token.span.start)
+        self.at(-1).is_some_and(|before| before.span.end == self.token.span.start)
     }
 
     fn is_name(&self, offset: isize) -> bool {
         let token = self.at(offset);
-        token.is_some_and(|token| {
-            token.kind == TokenKind::Word && !is_keyword(self.scan.text(token))
-        })
+        token.is_some_and(|token| token.kind == TokenKind::Word && !is_keyword(self.scan.text(token)))
     }
 
     /// Characters that begin no token.
@@ -139,9 +114,7 @@ impl<'s> Place<'_, 's> {
         }
         let character = self.text.chars().next()?;
         match self.token.kind {
-            TokenKind::Unknown if character.is_ascii() => {
-                self.here(Kind::UnknownCharacter { character })
-            }
+            TokenKind::Unknown if character.is_ascii() => self.here(Kind::UnknownCharacter { character }),
             TokenKind::Unknown => self.here(Kind::NonAscii { character }),
             _ => None,
         }
@@ -151,17 +124,12 @@ impl<'s> Place<'_, 's> {
     fn bracket(&self) -> Guess {
         let before = self.tokens.start..self.index;
         let open = unclosed(self.scan, before);
-        let begins_statement =
-            is_item_keyword(self.text) && is_first_of_line(self.scan, self.index);
+        let begins_statement = is_item_keyword(self.text) && is_first_of_line(self.scan, self.index);
         match (self.token.kind, &open) {
-            (TokenKind::Close, None) => self.here(Kind::Unopened {
-                close: self.text.chars().next()?,
-            }),
+            (TokenKind::Close, None) => self.here(Kind::Unopened { close: self.text.chars().next()? }),
             // A brace is rarely the forgotten one: what meets it closes nothing.
             (TokenKind::Close, Some(bracket)) if closes(&bracket.kind, "}") && self.text != "}" => {
-                self.here(Kind::Unopened {
-                    close: self.text.chars().next()?,
-                })
+                self.here(Kind::Unopened { close: self.text.chars().next()? })
             }
             (TokenKind::Close, Some(bracket)) if !closes(&bracket.kind, self.text) => open,
             // Where an expression is missing, that is the better thing to say.
@@ -182,19 +150,12 @@ impl<'s> Place<'_, 's> {
         let bracket = self.text.chars().next()?;
         let before = self.at(-1)?.span;
         let kind = Kind::SpaceBeforeBracket { name, bracket };
-        Some(SyntaxError {
-            kind,
-            span: before.to(self.token.span),
-        })
+        Some(SyntaxError { kind, span: before.to(self.token.span) })
     }
 
     fn lambda(&self) -> Guess {
         let is_lambda = matches!(self.text, "|" | "||") && self.expects("an expression");
-        if is_lambda {
-            self.here(Kind::StrayLambda)
-        } else {
-            None
-        }
+        if is_lambda { self.here(Kind::StrayLambda) } else { None }
     }
 
     /// Points at the `if` whose arm was closed just before.
@@ -203,21 +164,12 @@ impl<'s> Place<'_, 's> {
             return None;
         }
         let mut depth = 0usize;
-        for token in self
-            .scan
-            .tokens
-            .get(self.tokens.start..self.index)?
-            .iter()
-            .rev()
-        {
+        for token in self.scan.tokens.get(self.tokens.start..self.index)?.iter().rev() {
             match (token.kind, self.scan.text(*token)) {
                 (TokenKind::Close, _) => depth += 1,
                 (TokenKind::Open, _) => depth = depth.saturating_sub(1),
                 (TokenKind::Word, "if") if depth == 0 => {
-                    return Some(SyntaxError {
-                        kind: Kind::MissingElse,
-                        span: token.span,
-                    });
+                    return Some(SyntaxError { kind: Kind::MissingElse, span: token.span });
                 }
                 _ => {}
             }
@@ -228,20 +180,14 @@ impl<'s> Place<'_, 's> {
     /// `return x`, and expressions that stand as statements.
     fn not_an_assignment(&self) -> Guess {
         let before = self.at(-1)?;
-        let found_equals = matches!(
-            self.text,
-            ":" | "::" | "=>" | "==" | "+=" | "-=" | "*=" | "/="
-        );
+        let found_equals = matches!(self.text, ":" | "::" | "=>" | "==" | "+=" | "-=" | "*=" | "/=");
         let begins = self.expects("`=`") && self.is_name(-1) && !found_equals;
         let is_return = self.text_at(-1) == "return";
         // A name behind a name is a declaration in another language's order: `float x = 1`.
         if !begins || !self.previous_begins_statement() || (self.is_name(0) && !is_return) {
             return None;
         }
-        Some(SyntaxError {
-            kind: Kind::NotAnAssignment { is_return },
-            span: before.span,
-        })
+        Some(SyntaxError { kind: Kind::NotAnAssignment { is_return }, span: before.span })
     }
 
     /// Whether the token before could be the first of a statement: not the name behind `let`, nor
@@ -258,14 +204,11 @@ impl<'s> Place<'_, 's> {
             true => self.text_at(1) != "=",
             false => is_first_of_line(self.scan, self.index) || self.text_at(-1) == "{",
         };
-        let could_be_name =
-            begins_statement || self.expects("a name") || self.expects("an expression");
+        let could_be_name = begins_statement || self.expects("a name") || self.expects("an expression");
         if !is_keyword(self.text) || !could_be_name || is_meant {
             return None;
         }
-        self.here(Kind::KeywordAsName {
-            keyword: self.text.to_string(),
-        })
+        self.here(Kind::KeywordAsName { keyword: self.text.to_string() })
     }
 
     /// The text ended; the last token is what there is to show.
@@ -275,10 +218,7 @@ impl<'s> Place<'_, 's> {
         }
         let span = self.at(-1).map(|last| last.span).unwrap_or_default();
         let expected = self.expected.to_vec();
-        Some(SyntaxError {
-            kind: Kind::UnexpectedEnd { expected },
-            span,
-        })
+        Some(SyntaxError { kind: Kind::UnexpectedEnd { expected }, span })
     }
 
     fn unexpected(&self) -> SyntaxError {
@@ -286,15 +226,8 @@ impl<'s> Place<'_, 's> {
             TokenKind::Text => "a string".to_string(),
             _ => format!("`{}`", self.text),
         };
-        let kind = Kind::Unexpected {
-            found,
-            expected: self.expected.to_vec(),
-            help: self.habit(),
-        };
-        SyntaxError {
-            kind,
-            span: self.token.span,
-        }
+        let kind = Kind::Unexpected { found, expected: self.expected.to_vec(), help: self.habit() };
+        SyntaxError { kind, span: self.token.span }
     }
 }
 
@@ -305,8 +238,5 @@ fn closes(open: &Kind, bracket: &str) -> bool {
 
 fn is_keyword(word: &str) -> bool {
     is_item_keyword(word)
-        || matches!(
-            word,
-            "if" | "else" | "fold" | "for" | "in" | "while" | "true" | "false"
-        )
+        || matches!(word, "if" | "else" | "fold" | "for" | "in" | "while" | "true" | "false")
 }

@@ -197,28 +197,19 @@ impl SyntaxError {
             Kind::UnclosedText => "this string is not closed on its line".into(),
             Kind::UnknownCharacter { character } => format!("`{character}` has no meaning here"),
             Kind::NonAscii { character } => {
-                format!(
-                    "`{}` stands outside comments and strings",
-                    character.escape_debug()
-                )
+                format!("`{}` stands outside comments and strings", character.escape_debug())
             }
             Kind::BadEscape { escape } => format!("`{}` is no escape", shorten(escape)),
             Kind::BadNumber { text, .. } => format!("`{}` is no number", shorten(text)),
             Kind::NumberTooLarge { text } => format!("`{}` is too large", shorten(text)),
             Kind::BadColor { text } => format!("`{}` is no colour", shorten(text)),
-            Kind::Unexpected {
-                found, expected, ..
-            } if expected.is_empty() => {
+            Kind::Unexpected { found, expected, .. } if expected.is_empty() => {
                 format!("unexpected {}", shorten(found))
             }
-            Kind::Unexpected {
-                found, expected, ..
-            } => {
+            Kind::Unexpected { found, expected, .. } => {
                 format!("expected {}, found {}", either(expected), shorten(found))
             }
-            Kind::UnexpectedEnd { expected } if expected.is_empty() => {
-                "the text ends too early".into()
-            }
+            Kind::UnexpectedEnd { expected } if expected.is_empty() => "the text ends too early".into(),
             Kind::UnexpectedEnd { expected } => {
                 format!("expected {}, but the text ends", either(expected))
             }
@@ -231,10 +222,7 @@ impl SyntaxError {
             Kind::ChainedComparison => "comparisons do not chain".into(),
             Kind::StrayLambda => "a lambda stands only as an argument of a call".into(),
             Kind::SpaceBeforeBracket { name, bracket } => {
-                format!(
-                    "there is a space between `{}` and its `{bracket}`",
-                    shorten(name)
-                )
+                format!("there is a space between `{}` and its `{bracket}`", shorten(name))
             }
             Kind::NotAnAssignment { is_return: true } => "there is no `return`".into(),
             Kind::NotAnAssignment { .. } => "this statement assigns nothing".into(),
@@ -288,12 +276,8 @@ impl SyntaxError {
             Kind::UnknownCharacter { character } => return character_help(*character),
             Kind::NonAscii { .. } => "names use the letters A to Z, digits and `_`",
             Kind::BadEscape { .. } => "the escapes are `\\\"`, `\\\\`, `\\n`, `\\t` and `\\u{…}`",
-            Kind::BadNumber {
-                mend: Some(mend), ..
-            } => return Some(format!("write `{mend}`")),
-            Kind::BadNumber { .. } => {
-                "numbers are `3`, `3.0` and `1e-3`; angles are `90deg` and `0.25turn`"
-            }
+            Kind::BadNumber { mend: Some(mend), .. } => return Some(format!("write `{mend}`")),
+            Kind::BadNumber { .. } => "numbers are `3`, `3.0` and `1e-3`; angles are `90deg` and `0.25turn`",
             Kind::BadColor { .. } => "colours are `#rgb`, `#rrggbb` and `#rrggbbaa`",
             Kind::Unexpected { help, .. } => return help.map(str::to_string),
             Kind::KeywordAsName { keyword } => return Some(format!("try `{keyword}_`")),

@@ -30,18 +30,11 @@ use writer::Writer;
 /// Those of [`parse`].
 pub fn format(source: &str) -> Result<String, Vec<SyntaxError>> {
     let file = parse(source)?;
-    let mut formatter = Formatter {
-        writer: Writer::new(source, &file.comments),
-        blocks: Vec::new(),
-    };
+    let mut formatter = Formatter { writer: Writer::new(source, &file.comments), blocks: Vec::new() };
     formatter.file(&file);
     let mut pieces = formatter.writer.pieces;
     align(&mut pieces, &formatter.blocks);
-    Ok(if pieces.is_empty() {
-        String::new()
-    } else {
-        layout::render(&pieces)
-    })
+    Ok(if pieces.is_empty() { String::new() } else { layout::render(&pieces) })
 }
 
 /// Walks the tree.
@@ -78,16 +71,11 @@ fn align(pieces: &mut [Piece<'_>], blocks: &[Vec<Assignment>]) {
 }
 
 fn align_run(pieces: &mut [Piece<'_>], measures: &Measures, run: &[Assignment]) {
-    let column = |assignment: &Assignment| {
-        measures
-            .flat(assignment.start, assignment.pad)
-            .unwrap_or_default()
-    };
+    let column =
+        |assignment: &Assignment| measures.flat(assignment.start, assignment.pad).unwrap_or_default();
     let widest = run.iter().map(column).max().unwrap_or_default();
     let fits = run.iter().all(|assignment| {
-        let width = measures
-            .flat(assignment.start, assignment.end)
-            .unwrap_or_default();
+        let width = measures.flat(assignment.start, assignment.end).unwrap_or_default();
         layout::fits(assignment.level, width + widest - column(assignment))
     });
     for assignment in run.iter().filter(|_| fits) {

@@ -42,10 +42,7 @@ pub(crate) fn check(scan: &Scan<'_>, tokens: &[Token]) -> Result<(), SyntaxError
     for token in tokens {
         counter.step(token.kind, scan.text(*token));
         if counter.depth + counter.prefixes > MAX_NESTING {
-            return Err(SyntaxError {
-                kind: SyntaxErrorKind::TooDeep,
-                span: token.span,
-            });
+            return Err(SyntaxError { kind: SyntaxErrorKind::TooDeep, span: token.span });
         }
     }
     Ok(())
@@ -95,11 +92,7 @@ impl Counter {
 
     fn open(&mut self, kind: LevelKind, weight: usize) {
         // The prefixes become part of the level, for they apply to what is inside.
-        let level = Level {
-            kind,
-            weight: weight + self.prefixes,
-            prefixes: self.prefixes,
-        };
+        let level = Level { kind, weight: weight + self.prefixes, prefixes: self.prefixes };
         self.prefixes = 0;
         self.depth += level.weight;
         self.levels.push(level);

@@ -51,19 +51,13 @@ pub fn parse(source: &str) -> Result<File, Vec<SyntaxError>> {
         pieces if pieces.len() > 1 => parse_pieces(&scan, pieces).unwrap_or(errors),
         _ => errors,
     });
-    whole.map(|file| File {
-        comments: scan.comments,
-        ..file
-    })
+    whole.map(|file| File { comments: scan.comments, ..file })
 }
 
 /// The errors of all pieces, or `None` if there are none.
 fn parse_pieces(scan: &Scan<'_>, pieces: Vec<Range<usize>>) -> Option<Vec<SyntaxError>> {
-    let errors: Vec<_> = pieces
-        .into_iter()
-        .filter_map(|piece| parse_piece(scan, piece).err())
-        .flatten()
-        .collect();
+    let errors: Vec<_> =
+        pieces.into_iter().filter_map(|piece| parse_piece(scan, piece).err()).flatten().collect();
     (!errors.is_empty()).then_some(errors)
 }
 
@@ -77,41 +71,23 @@ fn parse_piece(scan: &Scan<'_>, tokens: Range<usize>) -> Result<File, Vec<Syntax
     nesting::check(scan, &scan.tokens[tokens.clone()]).map_err(|error| vec![error])?;
     let pairs = run(Rule::file, scan, text.clone())
         .map_err(|failure| vec![diagnose::explain(scan, tokens, failure)])?;
-    let mut builder = Builder {
-        offset: text.start,
-        source: scan.source,
-        comments: &scan.comments,
-        errors: Vec::new(),
-    };
+    let mut builder =
+        Builder { offset: text.start, source: scan.source, comments: &scan.comments, errors: Vec::new() };
     let file = builder.file(pairs).map_err(|error| vec![error])?;
-    if builder.errors.is_empty() {
-        Ok(file)
-    } else {
-        Err(builder.errors)
-    }
+    if builder.errors.is_empty() { Ok(file) } else { Err(builder.errors) }
 }
 
 /// The text from the first of the tokens to the first one after them.
 fn text_of(scan: &Scan<'_>, tokens: &Range<usize>) -> Range<usize> {
-    let start_of = |index: usize| {
-        scan.tokens
-            .get(index)
-            .map(|token| token.span.start as usize)
-    };
-    let start = if tokens.start == 0 {
-        0
-    } else {
-        start_of(tokens.start).unwrap_or(0)
-    };
+    let start_of = |index: usize| scan.tokens.get(index).map(|token| token.span.start as usize);
+    let start = if tokens.start == 0 { 0 } else { start_of(tokens.start).unwrap_or(0) };
     start..start_of(tokens.end).unwrap_or(scan.source.len())
 }
 
 /// What the scan has found wrong in a stretch of text.
 fn errors_within(scan: &Scan<'_>, text: Range<usize>) -> Vec<SyntaxError> {
     let place = |error: &SyntaxError| error.span.start as usize;
-    let start = scan
-        .errors
-        .partition_point(|error| place(error) < text.start);
+    let start = scan.errors.partition_point(|error| place(error) < text.start);
     let end = scan.errors.partition_point(|error| place(error) < text.end);
     scan.errors[start..end].to_vec()
 }
@@ -129,12 +105,7 @@ pub fn parse_signature(text: &str) -> Result<Signature, SyntaxError> {
     nesting::check(&scan, &scan.tokens)?;
     let pairs = run(Rule::signature, &scan, 0..text.len())
         .map_err(|failure| diagnose::explain(&scan, 0..scan.tokens.len(), failure))?;
-    let mut builder = Builder {
-        offset: 0,
-        source: text,
-        comments: &scan.comments,
-        errors: Vec::new(),
-    };
+    let mut builder = Builder { offset: 0, source: text, comments: &scan.comments, errors: Vec::new() };
     let signature = builder.signature(pairs)?;
     builder.errors.into_iter().next().map_or(Ok(signature), Err)
 }
@@ -150,15 +121,9 @@ fn run<'s>(rule: Rule, scan: &Scan<'s>, text: Range<usize>) -> Result<Pairs<'s, 
                 InputLocation::Pos(at) | InputLocation::Span((at, _)) => offset + at,
             };
             let ErrorVariant::ParsingError { positives, .. } = error.variant else {
-                return Err(Failure {
-                    at,
-                    expected: Vec::new(),
-                });
+                return Err(Failure { at, expected: Vec::new() });
             };
-            Err(Failure {
-                at,
-                expected: expected(&positives),
-            })
+            Err(Failure { at, expected: expected(&positives) })
         }
     }
 }
@@ -167,15 +132,12 @@ fn run<'s>(rule: Rule, scan: &Scan<'s>, text: Range<usize>) -> Result<Pairs<'s, 
 pub(crate) fn is_literal(text: &str) -> bool {
     [Rule::number, Rule::color, Rule::text]
         .into_iter()
-        .any(|rule| {
-            TexParser::parse(rule, text).is_ok_and(|pairs| pairs.as_str().len() == text.len())
-        })
+        .any(|rule| TexParser::parse(rule, text).is_ok_and(|pairs| pairs.as_str().len() == text.len()))
 }
 
 /// What pest tried, in words: the likeliest first.
 fn expected(rules: &[Rule]) -> Vec<&'static str> {
-    let mut words: Vec<(u8, &'static str)> =
-        rules.iter().filter_map(|rule| in_words(*rule)).collect();
+    let mut words: Vec<(u8, &'static str)> = rules.iter().filter_map(|rule| in_words(*rule)).collect();
     words.sort_unstable();
     words.dedup();
     let best = words.first().map_or(0, |word| word.0);
@@ -227,9 +189,6 @@ impl Builder<'_> {
     /// The error for a pair that the grammar promises and that is not there.
     fn missing(&self, what: &'static str) -> SyntaxError {
         let span = Span::new(self.offset, self.offset);
-        SyntaxError {
-            kind: SyntaxErrorKind::Grammar { missing: what },
-            span,
-        }
+        SyntaxError { kind: SyntaxErrorKind::Grammar { missing: what }, span }
     }
 }

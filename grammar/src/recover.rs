@@ -23,12 +23,7 @@ pub(crate) fn pieces(scan: &Scan<'_>) -> Vec<Range<usize>> {
         }
     }
     let ends = starts.iter().skip(1).copied().chain([scan.tokens.len()]);
-    starts
-        .iter()
-        .copied()
-        .zip(ends)
-        .map(|(start, end)| start..end)
-        .collect()
+    starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect()
 }
 
 /// The brackets that are open, on the guess that braces are rarely the forgotten ones.
@@ -49,10 +44,7 @@ impl<'s> Brackets<'s> {
         if bracket == "}" && self.braces > 0 {
             while self.open.pop().is_some_and(|open| open != "{") {}
             self.braces -= 1;
-        } else if matches!(
-            (self.innermost(), bracket),
-            (Some("("), ")") | (Some("["), "]")
-        ) {
+        } else if matches!((self.innermost(), bracket), (Some("("), ")") | (Some("["), "]")) {
             self.open.pop();
         }
     }
@@ -86,9 +78,7 @@ pub(crate) fn is_item_keyword(word: &str) -> bool {
 pub(crate) fn is_first_of_line(scan: &Scan<'_>, index: usize) -> bool {
     let start_of = |token: &Token| token.span.start as usize;
     let end = scan.tokens.get(index).map_or(scan.source.len(), start_of);
-    let before = index
-        .checked_sub(1)
-        .and_then(|before| scan.tokens.get(before));
+    let before = index.checked_sub(1).and_then(|before| scan.tokens.get(before));
     before.is_none_or(|before| {
         let gap = scan.source.get(before.span.end as usize..end);
         gap.is_some_and(|gap| gap.contains('\n'))

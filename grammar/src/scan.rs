@@ -57,32 +57,19 @@ impl<'s> Scan<'s> {
 }
 
 /// Marks of more than one character, the longest first.
-const SYMBOLS: [&str; 17] = [
-    "..=", "..", "->", "=>", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "*=", "/=", "::",
-    "++", "**",
-];
+const SYMBOLS: [&str; 17] =
+    ["..=", "..", "->", "=>", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "*=", "/=", "::", "++", "**"];
 
 /// Scans a text of at most [`MAX_BYTES`] bytes.
 pub(crate) fn scan(source: &str) -> Result<Scan<'_>, SyntaxError> {
     if source.len() > MAX_BYTES {
         return Err(SyntaxError {
-            kind: SyntaxErrorKind::FileTooLarge {
-                bytes: source.len(),
-            },
+            kind: SyntaxErrorKind::FileTooLarge { bytes: source.len() },
             span: beyond_limit(source),
         });
     }
-    let scan = Scan {
-        source,
-        tokens: Vec::new(),
-        comments: Vec::new(),
-        errors: Vec::new(),
-    };
-    let mut scanner = Scanner {
-        scan,
-        bytes: source.as_bytes(),
-        at: 0,
-    };
+    let scan = Scan { source, tokens: Vec::new(), comments: Vec::new(), errors: Vec::new() };
+    let mut scanner = Scanner { scan, bytes: source.as_bytes(), at: 0 };
     while scanner.at < scanner.bytes.len() {
         scanner.step();
     }
@@ -132,10 +119,7 @@ impl Scanner<'_> {
     }
 
     fn push(&mut self, kind: TokenKind, start: usize) {
-        self.scan.tokens.push(Token {
-            kind,
-            span: Span::new(start, self.at),
-        });
+        self.scan.tokens.push(Token { kind, span: Span::new(start, self.at) });
     }
 
     fn mark(&mut self, kind: TokenKind, length: usize) {
@@ -145,10 +129,7 @@ impl Scanner<'_> {
     }
 
     fn fail(&mut self, kind: SyntaxErrorKind, start: usize, end: usize) {
-        self.scan.errors.push(SyntaxError {
-            kind,
-            span: Span::new(start, end),
-        });
+        self.scan.errors.push(SyntaxError { kind, span: Span::new(start, end) });
     }
 
     fn skip_word(&mut self) {
@@ -159,11 +140,7 @@ impl Scanner<'_> {
 
     fn line_end(&self) -> usize {
         let rest = &self.bytes[self.at..];
-        self.at
-            + rest
-                .iter()
-                .position(|byte| *byte == b'\n')
-                .unwrap_or(rest.len())
+        self.at + rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len())
     }
 
     fn line_comment(&mut self) {
@@ -179,10 +156,7 @@ impl Scanner<'_> {
     }
 
     fn comment(&mut self, kind: CommentKind, start: usize) {
-        self.scan.comments.push(Comment {
-            span: Span::new(start, self.at),
-            kind,
-        });
+        self.scan.comments.push(Comment { span: Span::new(start, self.at), kind });
     }
 
     fn block_comment(&mut self) {
@@ -263,11 +237,7 @@ impl Scanner<'_> {
         let rest = &self.scan.source[self.at..];
         let length = rest.chars().next().map_or(1, char::len_utf8);
         let known = b"+-*/%<>=!|,:;.".contains(&self.byte(0));
-        let kind = if known {
-            TokenKind::Symbol
-        } else {
-            TokenKind::Unknown
-        };
+        let kind = if known { TokenKind::Symbol } else { TokenKind::Unknown };
         self.mark(kind, length);
     }
 }

@@ -5,9 +5,7 @@ use texgraph_grammar::{SYNTAX_CODES, SyntaxError, parse, parse_signature};
 mod support;
 
 fn errors(source: &str) -> Vec<SyntaxError> {
-    parse(source)
-        .err()
-        .unwrap_or_else(|| panic!("is right: {source}"))
+    parse(source).err().unwrap_or_else(|| panic!("is right: {source}"))
 }
 
 /// The code, the underlined text, and the whole error in words.
@@ -35,23 +33,13 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("let größe = 1", "E0006", "ö", "A to Z"),
     ("let a = 3 × 4", "E0006", "×", "outside comments"),
     ("let a = f(\"x\\qy\")", "E0007", "\\q", "\\u{"),
-    (
-        "let a = f(\"x\\u{110000}\")",
-        "E0007",
-        "\\u{110000}",
-        "no escape",
-    ),
+    ("let a = f(\"x\\u{110000}\")", "E0007", "\\u{110000}", "no escape"),
     ("let a = 3y", "E0008", "3y", "90deg"),
     ("let a = 0x1F", "E0008", "0x1F", "no number"),
     ("let a = 1. + 2", "E0008", "1.", "write `1.0`"),
     ("let a = .5", "E0008", ".5", "write `0.5`"),
     ("let a = 1e999", "E0009", "1e999", "too large"),
-    (
-        "let a = f<99999999999>(1)",
-        "E0009",
-        "99999999999",
-        "too large",
-    ),
+    ("let a = f<99999999999>(1)", "E0009", "99999999999", "too large"),
     ("let a = #12345", "E0010", "#12345", "#rrggbb"),
     ("let a = #ggg", "E0010", "#ggg", "no colour"),
     ("let a 3", "E0011", "3", "expected `=`, found `3`"),
@@ -60,29 +48,14 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("let a = f(b c)", "E0011", "c", "expected `,` or `)`"),
     ("let a = f(b = 1)", "E0011", "=", "`f(octaves: 6)`"),
     ("let a = f(1, , 2)", "E0011", ",", "expected an expression"),
-    (
-        "let a = if b { let c = 1 } else { 2 }",
-        "E0011",
-        "let",
-        "one expression",
-    ),
+    ("let a = if b { let c = 1 } else { 2 }", "E0011", "let", "one expression"),
     ("node n(a: int) { }", "E0011", "{", "-> (value: float)"),
-    (
-        "node n(a: int) -> int { }",
-        "E0011",
-        "int",
-        "-> (value: float)",
-    ),
+    ("node n(a: int) -> int { }", "E0011", "int", "-> (value: float)"),
     ("node n(a) -> (b: int) { }", "E0011", ")", "expected `:`"),
     ("param p = 1.0", "E0011", "=", "expected `:`"),
     ("fn f(x) { x }", "E0011", "fn", "`node`"),
     ("import \"a.tex\"", "E0011", "import", "use \"path.tex\""),
-    (
-        "let a =\nlet b = 1",
-        "E0011",
-        "let",
-        "expected an expression, found `let`",
-    ),
+    ("let a =\nlet b = 1", "E0011", "let", "expected an expression, found `let`"),
     ("let a = (1 : 2)", "E0011", ":", "found `:`"),
     ("let a =", "E0012", "=", "expected an expression"),
     ("param p: int", "E0012", "int", "the text ends"),
@@ -92,12 +65,7 @@ const CASES: &[(&str, &str, &str, &str)] = &[
     ("let fold = 1", "E0015", "fold", "try `fold_`"),
     ("let a = f(in)", "E0015", "in", "a keyword"),
     ("let a = if b { c }", "E0016", "if", "needs an `else`"),
-    (
-        "let a = if b { if c { 1 } else { 2 } }\nlet d = 1",
-        "E0016",
-        "if",
-        "else",
-    ),
+    ("let a = if b { if c { 1 } else { 2 } }\nlet d = 1", "E0016", "if", "else"),
     ("let a = 1 < b < 3", "E0017", "<", "a < b && b < c"),
     ("let a = |b| b + 1", "E0018", "|", "argument of a call"),
     ("let a = f (1)", "E0019", "f (", "write `f(`"),
@@ -148,11 +116,7 @@ fn every_code_has_a_case() {
         assert!(tested(code), "{code}: {title}");
     }
     assert!(SYNTAX_CODES.is_sorted_by(|a, b| a.0 < b.0));
-    assert!(
-        CASES
-            .iter()
-            .all(|case| SYNTAX_CODES.iter().any(|code| code.0 == case.1))
-    );
+    assert!(CASES.iter().all(|case| SYNTAX_CODES.iter().any(|code| code.0 == case.1)));
 }
 
 #[test]
@@ -174,10 +138,8 @@ let f = 1 < 2 < 3
 /// A right one.
 let g = \"open
 node h(";
-    let found: Vec<_> = errors(source)
-        .iter()
-        .map(|error| (error.code(), &source[error.span.range()]))
-        .collect();
+    let found: Vec<_> =
+        errors(source).iter().map(|error| (error.code(), &source[error.span.range()])).collect();
     let expected = [
         ("E0008", "3y"),
         ("E0013", "("),
@@ -192,8 +154,7 @@ node h(";
 
 #[test]
 fn a_forgotten_bracket_spoils_one_item_only() {
-    let source =
-        "node a() -> (v: int) {\n    v = f(1\n\nnode b() -> (v: int) {\n    v = 1\n}\nlet c = 3y\n";
+    let source = "node a() -> (v: int) {\n    v = f(1\n\nnode b() -> (v: int) {\n    v = 1\n}\nlet c = 3y\n";
     let codes: Vec<_> = errors(source).iter().map(SyntaxError::code).collect();
     assert_eq!(codes, ["E0013", "E0008"]);
 }
@@ -201,43 +162,22 @@ fn a_forgotten_bracket_spoils_one_item_only() {
 #[test]
 fn errors_of_signatures() {
     assert!(parse_signature("(a: float) -> float").is_ok());
-    assert_eq!(
-        parse_signature("(a: float) -> ").unwrap_err().code(),
-        "E0012"
-    );
-    assert_eq!(
-        parse_signature("(a float) -> float").unwrap_err().code(),
-        "E0011"
-    );
+    assert_eq!(parse_signature("(a: float) -> ").unwrap_err().code(), "E0012");
+    assert_eq!(parse_signature("(a float) -> float").unwrap_err().code(), "E0011");
     assert_eq!(parse_signature("").unwrap_err().code(), "E0012");
-    assert_eq!(
-        parse_signature("(a: float = 1 < 2 < 3) -> float")
-            .unwrap_err()
-            .code(),
-        "E0017"
-    );
+    assert_eq!(parse_signature("(a: float = 1 < 2 < 3) -> float").unwrap_err().code(), "E0017");
 }
 
 /// Reads a text that may be broken in any way.
 fn survive(source: &str) {
     let Err(errors) = parse(source) else { return };
     assert!(!errors.is_empty(), "{source}");
-    assert!(
-        errors.is_sorted_by_key(|error| error.span.start),
-        "{source}: {errors:?}"
-    );
+    assert!(errors.is_sorted_by_key(|error| error.span.start), "{source}: {errors:?}");
     for error in errors {
         let text = source.get(error.span.range());
-        assert!(
-            text.is_some_and(|text| !text.is_empty()),
-            "{source}: {error:?}"
-        );
+        assert!(text.is_some_and(|text| !text.is_empty()), "{source}: {error:?}");
         assert_ne!(error.code(), "E0049", "{source}");
-        let words = [
-            error.message(),
-            error.label(),
-            error.help().unwrap_or_default(),
-        ];
+        let words = [error.message(), error.label(), error.help().unwrap_or_default()];
         assert!(words.iter().all(|words| !words.contains('\n')), "{words:?}");
     }
 }
@@ -264,10 +204,7 @@ fn mutants_survive() {
 #[test]
 fn cut_texts_survive() {
     for (_, source) in support::examples() {
-        for at in (0..source.len())
-            .step_by(3)
-            .filter(|at| source.is_char_boundary(*at))
-        {
+        for at in (0..source.len()).step_by(3).filter(|at| source.is_char_boundary(*at)) {
             survive(&source[..at]);
             survive(&source[at..]);
         }

@@ -11,8 +11,7 @@ fn formatted(source: &str) -> String {
 
 /// The tree without its places: what must survive formatting.
 fn shape(source: &str) -> String {
-    let File { doc, items, .. } =
-        parse(source).unwrap_or_else(|errors| panic!("{errors:?}\n{source}"));
+    let File { doc, items, .. } = parse(source).unwrap_or_else(|errors| panic!("{errors:?}\n{source}"));
     let text = format!("{doc:?} {items:?}");
     let mut out = String::new();
     let mut rest = text.as_str();
@@ -36,9 +35,7 @@ fn examples_are_stable() {
     for (name, source) in support::examples() {
         let once = check(&source);
         assert!(once.ends_with('\n') && !once.ends_with("\n\n"), "{name}");
-        let long = once
-            .lines()
-            .find(|line| line.chars().count() > 100 && !line.contains("//"));
+        let long = once.lines().find(|line| line.chars().count() > 100 && !line.contains("//"));
         assert_eq!(long, None, "{name}");
     }
 }
@@ -76,8 +73,7 @@ let b = 2
 #[test]
 fn empty_lines() {
     let source = "\n\n// c\n\n\n\nlet a = 1\n\n\n\nlet b = 2\nnode n() -> (a: int) {\n\n\na = 1\n\n\n}\nlet c = 3\n\n\n";
-    let expected =
-        "// c\n\nlet a = 1\n\nlet b = 2\n\nnode n() -> (a: int) {\n    a = 1\n}\n\nlet c = 3\n";
+    let expected = "// c\n\nlet a = 1\n\nlet b = 2\n\nnode n() -> (a: int) {\n    a = 1\n}\n\nlet c = 3\n";
     assert_eq!(check(source), expected);
 }
 
@@ -104,9 +100,7 @@ fn lists_of_numbers_fill_lines() {
 #[test]
 fn long_heads_break_at_their_inputs() {
     let inputs = ["position: vec3 = vec3(0.0)"; 4].join(", ");
-    let once = check(&format!(
-        "node n<n>({inputs}) -> (value: float) {{ value = 1.0 }}"
-    ));
+    let once = check(&format!("node n<n>({inputs}) -> (value: float) {{ value = 1.0 }}"));
     assert_eq!(once.lines().count(), 8, "{once}");
     assert!(once.contains("\n) -> (value: float) {\n"), "{once}");
 }
@@ -168,13 +162,7 @@ fn check_comment(at: usize, comment: &str) {
 fn one_comment_anywhere() {
     assert!(GAPS.len() > 250, "{}", GAPS.len());
     for at in GAPS.iter().copied() {
-        for comment in [
-            " /*c1c*/ ",
-            " // c1c\n",
-            "\n// c1c\n",
-            "\n\n/* c1c */\n\n",
-            " /* c1c\n*/ ",
-        ] {
+        for comment in [" /*c1c*/ ", " // c1c\n", "\n// c1c\n", "\n\n/* c1c */\n\n", " /* c1c\n*/ "] {
             check_comment(at, comment);
         }
     }
@@ -182,13 +170,7 @@ fn one_comment_anywhere() {
 
 #[test]
 fn comments_everywhere() {
-    for mark in [
-        " /*c#c*/ ",
-        " // c#c\n",
-        "\n// c#c\n",
-        "\n\n/* c#c */\n\n",
-        " /*c#c*/ // c#d\n",
-    ] {
+    for mark in [" /*c#c*/ ", " // c#c\n", "\n// c#c\n", "\n\n/* c#c */\n\n", " /*c#c*/ // c#d\n"] {
         let mut source = String::new();
         let mut before = 0;
         for (index, at) in GAPS.iter().enumerate() {
@@ -199,19 +181,10 @@ fn comments_everywhere() {
         source.push_str(&EVERYTHING[before..]);
         let once = check(&source);
         for index in 0..GAPS.len() {
-            assert_eq!(
-                once.matches(&format!("c{index}c")).count(),
-                1,
-                "comment {index}:\n{once}"
-            );
+            assert_eq!(once.matches(&format!("c{index}c")).count(), 1, "comment {index}:\n{once}");
         }
         let kinds = |text: &str| -> Vec<_> {
-            parse(text)
-                .unwrap()
-                .comments
-                .into_iter()
-                .map(|comment| comment.kind)
-                .collect()
+            parse(text).unwrap().comments.into_iter().map(|comment| comment.kind).collect()
         };
         assert_eq!(kinds(&source), kinds(&once));
     }
@@ -239,21 +212,9 @@ fn any_white_space_gives_the_same_text() {
 
 #[test]
 fn deep_and_long_files_format() {
-    check(&format!(
-        "let a = {}1{}",
-        "f(|a| ".repeat(128),
-        ")".repeat(128)
-    ));
-    check(&format!(
-        "let a = {}1{}",
-        "-if a { ".repeat(64),
-        "} else { 1 }".repeat(64)
-    ));
-    check(&format!(
-        "let a = {}1{}",
-        "fold (a = 1) for i in 1..2 { a = ".repeat(127),
-        "}".repeat(127)
-    ));
+    check(&format!("let a = {}1{}", "f(|a| ".repeat(128), ")".repeat(128)));
+    check(&format!("let a = {}1{}", "-if a { ".repeat(64), "} else { 1 }".repeat(64)));
+    check(&format!("let a = {}1{}", "fold (a = 1) for i in 1..2 { a = ".repeat(127), "}".repeat(127)));
     formatted(&format!("let a = 1{}", " + 1".repeat(100_000)));
     formatted(&format!("let a = 1{}", ".abs()".repeat(100_000)));
     formatted(&"let a = 1\n".repeat(50_000));

@@ -19,37 +19,23 @@ const NESTS: &[(&str, Nest)] = &[
     ("lists", |depth| value("[", "]", depth)),
     ("indices", |depth| value("a[", "]", depth)),
     ("calls", |depth| value("f(", ")", depth)),
-    ("methods", |depth| {
-        value("a * b.f(c, x: ", ") + 1 && d", depth)
-    }),
+    ("methods", |depth| value("a * b.f(c, x: ", ") + 1 && d", depth)),
     ("dimensions", |depth| value("f<n>(", ")", depth)),
     ("lambdas", |depth| value("f(|a, b| ", ")", depth)),
-    ("lambdas and methods", |depth| {
-        value("a + b.f<n>(x: |c, d| c < d && ", ") * 1", depth)
-    }),
+    ("lambdas and methods", |depth| value("a + b.f<n>(x: |c, d| c < d && ", ") * 1", depth)),
     ("minuses", |depth| value("-", "", depth)),
     ("nots", |depth| value("! ", "", depth)),
     ("arms", |depth| value("if a { ", "} else { 1 }", depth)),
     ("else arms", |depth| value("if a { 1 } else { ", "}", depth)),
-    ("conditions", |depth| {
-        value("if ", "{ 1 } else { 2 }", depth)
-    }),
+    ("conditions", |depth| value("if ", "{ 1 } else { 2 }", depth)),
     ("else ifs", |depth| {
         let more = "else if a { 1 } ".repeat(depth - 1);
         format!("let a = if a {{ 1 }} {more} else {{ 2 }}")
     }),
-    ("folds", |depth| {
-        value("fold (a = 1) for i in 0..2 { a = ", "}", depth - 1)
-    }),
-    ("fold ranges", |depth| {
-        value("fold (a = 1) for i in 0..", " {}", depth - 1)
-    }),
-    ("fold conditions", |depth| {
-        value("fold (a = 1) for i in 0..2 while ", " {}", depth - 1)
-    }),
-    ("fold limits", |depth| {
-        value("fold (a = 1) for i in 0..2 max ", " {}", depth - 1)
-    }),
+    ("folds", |depth| value("fold (a = 1) for i in 0..2 { a = ", "}", depth - 1)),
+    ("fold ranges", |depth| value("fold (a = 1) for i in 0..", " {}", depth - 1)),
+    ("fold conditions", |depth| value("fold (a = 1) for i in 0..2 while ", " {}", depth - 1)),
+    ("fold limits", |depth| value("fold (a = 1) for i in 0..2 max ", " {}", depth - 1)),
     ("types", |depth| {
         let ty = wrap("node(x: ", "int", ") -> int", depth - 1);
         format!("node a(x: {ty}) -> (a: int) {{}}")
@@ -128,22 +114,13 @@ fn nesting_far_beyond_the_limit_is_an_error() {
         "\"\\",
         "#",
     ];
-    let heads = [
-        "let a = ",
-        "node a(x: ",
-        "texture a(uv: vec2) -> (b: color) { b = if a { 1 } ",
-    ];
+    let heads = ["let a = ", "node a(x: ", "texture a(uv: vec2) -> (b: color) { b = if a { 1 } "];
     for part in parts {
         for head in heads {
             let count = 100_000.min((MAX_BYTES - 100) / part.len());
             let source = format!("{head}{}", part.repeat(count));
             let errors = parse(&source).expect_err(part);
-            assert!(
-                errors
-                    .iter()
-                    .all(|error| source.get(error.span.range()).is_some()),
-                "{part}"
-            );
+            assert!(errors.iter().all(|error| source.get(error.span.range()).is_some()), "{part}");
         }
     }
 }
@@ -171,10 +148,7 @@ fn long_files_parse() {
         format!("let a = f({})", "x: 1, ".repeat(100_000)),
         format!("let a = [{}]", "1,".repeat(100_000)),
         "let a = 1\n".repeat(50_000),
-        format!(
-            "texture a(uv: vec2) -> (b: color) {{{}}}",
-            " let a = 1".repeat(50_000)
-        ),
+        format!("texture a(uv: vec2) -> (b: color) {{{}}}", " let a = 1".repeat(50_000)),
         "/// a\n// b\n/* c */\n".repeat(30_000),
         format!("let a = /*{}*/ 1", "/**/".repeat(100_000)),
         format!("let a = f({})", "x /* a */ . y, ".repeat(40_000)),

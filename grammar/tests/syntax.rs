@@ -2,15 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 use texgraph_grammar::syntax::{
-    Argument, Dim, Expr, ExprKind, Fold, Item, ItemKind, Node, Pattern, Postfix, Statement, Type,
-    TypeKind, UnaryOperator,
+    Argument, Dim, Expr, ExprKind, Fold, Item, ItemKind, Node, Pattern, Postfix, Statement, Type, TypeKind,
+    UnaryOperator,
 };
 use texgraph_grammar::{parse, parse_signature};
 
 fn items(source: &str) -> Vec<Item> {
-    parse(source)
-        .unwrap_or_else(|errors| panic!("{errors:?}\n{source}"))
-        .items
+    parse(source).unwrap_or_else(|errors| panic!("{errors:?}\n{source}")).items
 }
 
 fn item(source: &str) -> ItemKind {
@@ -21,14 +19,8 @@ fn item(source: &str) -> ItemKind {
 
 fn expr(source: &str) -> Expr {
     let text = format!("let a = {source}");
-    let ItemKind::Let { value, .. } = item(&text) else {
-        panic!("{text}")
-    };
-    assert_eq!(
-        &text[value.span.range()],
-        source.trim(),
-        "the span is tight"
-    );
+    let ItemKind::Let { value, .. } = item(&text) else { panic!("{text}") };
+    assert_eq!(&text[value.span.range()], source.trim(), "the span is tight");
     value
 }
 
@@ -48,19 +40,13 @@ fn show(expr: &Expr) -> String {
             call.dim.as_ref().map_or(String::new(), show_dim),
             show_arguments(&call.arguments)
         ),
-        ExprKind::Postfix { base, links } => links
-            .iter()
-            .fold(show(base), |base, link| base + &show_link(link)),
+        ExprKind::Postfix { base, links } => {
+            links.iter().fold(show(base), |base, link| base + &show_link(link))
+        }
         ExprKind::Unary { operators, operand } => {
             let signs: String = operators
                 .iter()
-                .map(|(operator, _)| {
-                    if *operator == UnaryOperator::Not {
-                        '!'
-                    } else {
-                        '-'
-                    }
-                })
+                .map(|(operator, _)| if *operator == UnaryOperator::Not { '!' } else { '-' })
                 .collect();
             format!("{signs}({})", show(operand))
         }
@@ -79,10 +65,7 @@ fn show(expr: &Expr) -> String {
             format!("{arms}else {}", show(otherwise))
         }
         ExprKind::List(values) => {
-            format!(
-                "[{}]",
-                values.iter().map(show).collect::<Vec<_>>().join(", ")
-            )
+            format!("[{}]", values.iter().map(show).collect::<Vec<_>>().join(", "))
         }
         ExprKind::Lambda { inputs, body } => {
             let inputs: Vec<_> = inputs.iter().map(|input| input.text.as_str()).collect();
@@ -104,11 +87,7 @@ fn show_link(link: &Postfix) -> String {
         Postfix::Field(name) => format!(".{}", name.text),
         Postfix::Method(call, _) => {
             let dim = call.dim.as_ref().map_or(String::new(), show_dim);
-            format!(
-                ".{}{dim}({})",
-                call.name.text,
-                show_arguments(&call.arguments)
-            )
+            format!(".{}{dim}({})", call.name.text, show_arguments(&call.arguments))
         }
         Postfix::Index(index, _) => format!("[{}]", show(index)),
     }
@@ -127,21 +106,13 @@ fn show_arguments(arguments: &[Argument]) -> String {
 
 fn show_type(ty: &Type) -> String {
     let fields = |fields: &[texgraph_grammar::syntax::Field]| {
-        let fields: Vec<_> = fields
-            .iter()
-            .map(|field| format!("{}: {}", field.name.text, show_type(&field.ty)))
-            .collect();
+        let fields: Vec<_> =
+            fields.iter().map(|field| format!("{}: {}", field.name.text, show_type(&field.ty))).collect();
         format!("({})", fields.join(", "))
     };
     match &ty.kind {
-        TypeKind::Named { name, dim } => {
-            name.text.clone() + &dim.as_ref().map_or(String::new(), show_dim)
-        }
-        TypeKind::Choice(names) => names
-            .iter()
-            .map(|name| name.text.as_str())
-            .collect::<Vec<_>>()
-            .join("|"),
+        TypeKind::Named { name, dim } => name.text.clone() + &dim.as_ref().map_or(String::new(), show_dim),
+        TypeKind::Choice(names) => names.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join("|"),
         TypeKind::Node { inputs, output } => {
             format!("node{} -> {}", fields(inputs), show_type(output))
         }
@@ -223,10 +194,7 @@ fn colours() {
 #[test]
 fn strings() {
     let value = expr(r#"f("a\"b\\c\nd\te\u{e9}\u{1F600} ü // no comment")"#);
-    assert_eq!(
-        show(&value),
-        "f(\"a\\\"b\\\\c\\nd\\teé😀 ü // no comment\")"
-    );
+    assert_eq!(show(&value), "f(\"a\\\"b\\\\c\\nd\\teé😀 ü // no comment\")");
 }
 
 #[test]
@@ -246,13 +214,9 @@ fn white_space_never_matters_but_before_brackets() {
 
 #[test]
 fn uses() {
-    let ItemKind::Use { path, alias } = item("use \"a/b.tex\"") else {
-        panic!()
-    };
+    let ItemKind::Use { path, alias } = item("use \"a/b.tex\"") else { panic!() };
     assert_eq!((path.value.as_str(), alias), ("a/b.tex", None));
-    let ItemKind::Use { alias, .. } = item("use \"a.tex\" as brick") else {
-        panic!()
-    };
+    let ItemKind::Use { alias, .. } = item("use \"a.tex\" as brick") else { panic!() };
     assert_eq!(alias.unwrap().text, "brick");
     let items = items("use \"a.tex\"\nuse \"b.tex\"   ");
     assert_eq!(items[0].span.range(), 0..11, "no white space in the span");
@@ -260,54 +224,32 @@ fn uses() {
 
 #[test]
 fn lets() {
-    let ItemKind::Let { name, value } = item("let a = f(1)") else {
-        panic!()
-    };
+    let ItemKind::Let { name, value } = item("let a = f(1)") else { panic!() };
     assert_eq!((name.text.as_str(), show(&value).as_str()), ("a", "f(1)"));
 }
 
 #[test]
 fn params() {
     let source = "param cells: int = 64 in 1..=65536";
-    let ItemKind::Param {
-        name,
-        ty,
-        default,
-        range,
-    } = item(source)
-    else {
-        panic!()
-    };
-    assert_eq!(
-        (name.text.as_str(), show_type(&ty)),
-        ("cells", "int".into())
-    );
+    let ItemKind::Param { name, ty, default, range } = item(source) else { panic!() };
+    assert_eq!((name.text.as_str(), show_type(&ty)), ("cells", "int".into()));
     let range = range.unwrap();
     assert!(range.inclusive);
     let shown = [&default, &*range.start, &*range.end].map(show);
     assert_eq!(shown, ["64", "1", "65536"]);
     assert_eq!(&source[range.span.range()], "1..=65536");
-    let ItemKind::Param { range, .. } = item("param a: vec2 = vec2(1.0)  ") else {
-        panic!()
-    };
+    let ItemKind::Param { range, .. } = item("param a: vec2 = vec2(1.0)  ") else { panic!() };
     assert_eq!(range, None);
-    let ItemKind::Param { range, .. } = item("param a: int = 0 in 0..4") else {
-        panic!()
-    };
+    let ItemKind::Param { range, .. } = item("param a: int = 0 in 0..4") else { panic!() };
     assert!(!range.unwrap().inclusive);
 }
 
 #[test]
 fn nodes() {
-    let node = node(
-        "node n<n, m,>(a: vec<n>, b: int = a.x + 1,) -> (v: vec<n>, w: float,) { v = a w = 1.0 }",
-    );
+    let node =
+        node("node n<n, m,>(a: vec<n>, b: int = a.x + 1,) -> (v: vec<n>, w: float,) { v = a w = 1.0 }");
     let names = |names: &[texgraph_grammar::syntax::Name]| {
-        names
-            .iter()
-            .map(|name| name.text.clone())
-            .collect::<Vec<_>>()
-            .join(" ")
+        names.iter().map(|name| name.text.clone()).collect::<Vec<_>>().join(" ")
     };
     assert_eq!(names(&node.dims), "n m");
     assert_eq!(node.inputs.len(), 2);
@@ -328,10 +270,7 @@ fn textures() {
     assert_eq!(node.name.text, "t");
     assert_eq!(show(&tiles.unwrap()), "vec2(1, 2)");
     let source = "texture t(uv: vec2) -> (color: color) { color = #fff }";
-    assert!(matches!(
-        item(source),
-        ItemKind::Texture { tiles: None, .. }
-    ));
+    assert!(matches!(item(source), ItemKind::Texture { tiles: None, .. }));
 }
 
 #[test]
@@ -342,14 +281,8 @@ fn statements() {
         .statements
         .iter()
         .map(|statement| match statement {
-            Statement::Let {
-                pattern: Pattern::Name(name),
-                ..
-            } => name.text.clone(),
-            Statement::Let {
-                pattern: Pattern::Record(names, _),
-                ..
-            } => format!("{}", names.len()),
+            Statement::Let { pattern: Pattern::Name(name), .. } => name.text.clone(),
+            Statement::Let { pattern: Pattern::Record(names, _), .. } => format!("{}", names.len()),
             Statement::Assign { name, value } => format!("{} = {}", name.text, show(value)),
         })
         .collect();
@@ -359,9 +292,7 @@ fn statements() {
 #[test]
 fn a_statement_ends_where_no_operator_follows() {
     let node = node("node n() -> (v: int) { v = a\n -b\n w = c\n }");
-    let Statement::Assign { value, .. } = &node.body.statements[0] else {
-        panic!()
-    };
+    let Statement::Assign { value, .. } = &node.body.statements[0] else { panic!() };
     assert_eq!(show(value), "(a - b)");
     assert_eq!(node.body.statements.len(), 2);
 }
@@ -375,22 +306,13 @@ fn types() {
         ("vec<n>", "vec<n>"),
         ("vec < 3 >", "vec<3>"),
         ("repeat | clamp | clear", "repeat|clamp|clear"),
-        (
-            "node(a: vec2, b: ivec<n>,) -> color",
-            "node(a: vec2, b: ivec<n>) -> color",
-        ),
-        (
-            "node() -> (d: float, r: float)",
-            "node() -> (d: float, r: float)",
-        ),
+        ("node(a: vec2, b: ivec<n>,) -> color", "node(a: vec2, b: ivec<n>) -> color"),
+        ("node() -> (d: float, r: float)", "node() -> (d: float, r: float)"),
         (
             "node(old: vec4, s: (d: float, r: float)) -> vec4",
             "node(old: vec4, s: (d: float, r: float)) -> vec4",
         ),
-        (
-            "node(f: node(a: int) -> int) -> int",
-            "node(f: node(a: int) -> int) -> int",
-        ),
+        ("node(f: node(a: int) -> int) -> int", "node(f: node(a: int) -> int) -> int"),
     ];
     for (source, expected) in cases {
         let text = format!("node n(x: {source} ) -> (v: int) {{}}");
@@ -398,10 +320,7 @@ fn types() {
         assert_eq!(show_type(ty), expected);
         assert_eq!(&text[ty.span.range()], source);
     }
-    assert!(
-        parse("node n(x: (a: int)) -> (v: int) {}").is_err(),
-        "records stand in node types only"
-    );
+    assert!(parse("node n(x: (a: int)) -> (v: int) {}").is_err(), "records stand in node types only");
 }
 
 #[test]
@@ -421,18 +340,9 @@ fn operators_bind_by_precedence() {
     shows(&[
         ("a + b * c - d / e % f", "(a + (b * c) - (d / e % f))"),
         ("a * b + c * d", "((a * b) + (c * d))"),
-        (
-            "a || b && c == d + e * f",
-            "(a || (b && (c == (d + (e * f)))))",
-        ),
-        (
-            "a * b + c < d && e || f",
-            "(((((a * b) + c) < d) && e) || f)",
-        ),
-        (
-            "a < b && c >= d || e != f",
-            "(((a < b) && (c >= d)) || (e != f))",
-        ),
+        ("a || b && c == d + e * f", "(a || (b && (c == (d + (e * f)))))"),
+        ("a * b + c < d && e || f", "(((((a * b) + c) < d) && e) || f)"),
+        ("a < b && c >= d || e != f", "(((a < b) && (c >= d)) || (e != f))"),
         ("(a + b) * c", "(paren((a + b)) * c)"),
     ]);
 }
@@ -460,20 +370,14 @@ fn postfixes_chain() {
 
 #[test]
 fn arguments_by_position_then_by_name() {
-    shows(&[
-        ("f(p, octaves: 6, x: y,)", "f(p, octaves: 6, x: y)"),
-        ("f()", "f()"),
-    ]);
+    shows(&[("f(p, octaves: 6, x: y,)", "f(p, octaves: 6, x: y)"), ("f()", "f()")]);
 }
 
 #[test]
 fn choices() {
     shows(&[
         ("if a { b } else { c }", "if a b else c"),
-        (
-            "if a { b } else if c { d } else if e { f } else { g }",
-            "if a b if c d if e f else g",
-        ),
+        ("if a { b } else if c { d } else if e { f } else { g }", "if a b if c d if e f else g"),
         ("1 + if a { b } else { c } * 2", "(1 + (if a b else c * 2))"),
         ("if a < b { c } else { d }", "if (a < b) c else d"),
     ]);
@@ -481,28 +385,20 @@ fn choices() {
 
 #[test]
 fn lists() {
-    shows(&[
-        ("[]", "[]"),
-        ("[a, [b, 1], #fff,]", "[a, [b, 1], [255, 255, 255, 255]]"),
-    ]);
+    shows(&[("[]", "[]"), ("[a, [b, 1], #fff,]", "[a, [b, 1], [255, 255, 255, 255]]")]);
 }
 
 #[test]
 fn lambdas_are_arguments() {
     shows(&[
-        (
-            "f(|a, b,| a + b, x: |p| p.y)",
-            "f(|a, b| (a + b), x: |p| p.y)",
-        ),
+        ("f(|a, b,| a + b, x: |p| p.y)", "f(|a, b| (a + b), x: |p| p.y)"),
         ("f(|| 1, | | 2)", "f(|| 1, || 2)"),
         ("f(a || b)", "f((a || b))"),
     ]);
 }
 
 fn fold(source: &str) -> Fold {
-    let ExprKind::Fold(fold) = expr(source).kind else {
-        panic!("{source}")
-    };
+    let ExprKind::Fold(fold) = expr(source).kind else { panic!("{source}") };
     *fold
 }
 
@@ -511,17 +407,11 @@ fn folds() {
     let whole = fold(
         "fold (hit = clear, p = -1.0,) for o in ivec2(-1)..=k max 64 while p < 1.0 { hit = p let x = 1 }",
     );
-    let accumulators: Vec<_> = whole
-        .accumulators
-        .iter()
-        .map(|(name, start)| format!("{} = {}", name.text, show(start)))
-        .collect();
+    let accumulators: Vec<_> =
+        whole.accumulators.iter().map(|(name, start)| format!("{} = {}", name.text, show(start))).collect();
     assert_eq!(accumulators, ["hit = clear", "p = -(1.0)"]);
     assert_eq!(whole.variable.text, "o");
-    assert_eq!(
-        (show(&whole.range.start), show(&whole.range.end)),
-        ("ivec2(-(1))".into(), "k".into())
-    );
+    assert_eq!((show(&whole.range.start), show(&whole.range.end)), ("ivec2(-(1))".into(), "k".into()));
     assert!(whole.range.inclusive);
     assert_eq!(show(&whole.max.unwrap()), "64");
     assert_eq!(show(&whole.condition.unwrap()), "(p < 1.0)");
@@ -548,16 +438,9 @@ fn spans_are_tight() {
     let source = "texture t(uv: vec2) -> (color: color) { let a = f( b ).c  color = a }  ";
     let items = items(source);
     assert_eq!(&source[items[0].span.range()], source.trim_end());
-    let ItemKind::Texture { node, .. } = &items[0].kind else {
-        panic!()
-    };
-    let Statement::Let { span, value, .. } = &node.body.statements[0] else {
-        panic!()
-    };
+    let ItemKind::Texture { node, .. } = &items[0].kind else { panic!() };
+    let Statement::Let { span, value, .. } = &node.body.statements[0] else { panic!() };
     assert_eq!(&source[span.range()], "let a = f( b ).c");
     assert_eq!(&source[value.span.range()], "f( b ).c");
-    assert_eq!(
-        &source[node.body.span.range()],
-        "{ let a = f( b ).c  color = a }"
-    );
+    assert_eq!(&source[node.body.span.range()], "{ let a = f( b ).c  color = a }");
 }

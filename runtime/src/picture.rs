@@ -142,14 +142,18 @@ impl std::error::Error for PictureError {}
 
 #[cfg(test)]
 mod tests {
-    use super::Picture;
+    use super::{Content, Picture};
 
     fn decoded(picture: &Picture) -> image::DynamicImage {
         image::load_from_memory(&picture.to_png().expect("it is written")).expect("it is a PNG")
     }
 
     fn picture(pixels: &[[f32; 4]], is_color: bool) -> Picture {
-        Picture { size: [pixels.len() as u32, 1], pixels: pixels.to_vec(), content: if is_color { Content::Color } else { Content::Data } }
+        Picture {
+            size: [pixels.len() as u32, 1],
+            pixels: pixels.to_vec(),
+            content: if is_color { Content::Color } else { Content::Data },
+        }
     }
 
     #[test]
@@ -175,7 +179,9 @@ mod tests {
 
     #[test]
     fn broken_sizes_are_errors() {
-        assert!(Picture { size: [2, 2], pixels: vec![[0.0; 4]; 3], content: Content::Color }.to_png().is_err());
+        assert!(
+            Picture { size: [2, 2], pixels: vec![[0.0; 4]; 3], content: Content::Color }.to_png().is_err()
+        );
         assert!(Picture { size: [0, 0], pixels: vec![], content: Content::Color }.to_png().is_err());
     }
 

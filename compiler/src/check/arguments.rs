@@ -101,7 +101,8 @@ impl<'a> Checker<'a> {
                     sentences::unknown_argument(self.place(f, name.span), head.name, &name.text, near)
                 }
                 (None, None) if fine => {
-                    let inputs: Vec<&str> = head.inputs.iter().map(|input| input.name.text.as_str()).collect();
+                    let inputs: Vec<&str> =
+                        head.inputs.iter().map(|input| input.name.text.as_str()).collect();
                     sentences::too_many_arguments(argument.place, head.name, &inputs)
                 }
                 // The first of several was reported.
@@ -147,7 +148,8 @@ impl<'a> Checker<'a> {
             }
             let mut from = place;
             for (input, slot) in head.inputs.iter().zip(slots) {
-                let Some(given) = slot.as_ref().filter(|_| types::dimension_variable(&input.ty) == Some(&variable.text))
+                let Some(given) =
+                    slot.as_ref().filter(|_| types::dimension_variable(&input.ty) == Some(&variable.text))
                 else {
                     continue;
                 };
@@ -219,10 +221,12 @@ impl<'a> Checker<'a> {
         let Given { wire, place, word, .. } = given;
         match (declared, wire) {
             (_, Wire::Unknown) => Wire::Unknown,
-            (Declared::Vector(scalar, width), wire) => {
-                self.coerce_named(f, &wire, (*scalar, *width), place, Some(input)).map_or(Wire::Unknown, Wire::Value)
+            (Declared::Vector(scalar, width), wire) => self
+                .coerce_named(f, &wire, (*scalar, *width), place, Some(input))
+                .map_or(Wire::Unknown, Wire::Value),
+            (Declared::Choice(words), Wire::Text(_)) => {
+                self.report(f, sentences::quoted_choice(place, input, words))
             }
-            (Declared::Choice(words), Wire::Text(_)) => self.report(f, sentences::quoted_choice(place, input, words)),
             (Declared::Choice(words), wire) => {
                 let written = match &wire {
                     Wire::Word(word, _) => Some(word.as_str()),
@@ -230,10 +234,15 @@ impl<'a> Checker<'a> {
                 };
                 match written.filter(|word| words.iter().any(|w| w == word)) {
                     Some(word) => Wire::Word(word.to_owned(), place),
-                    None => self.report(f, sentences::unknown_choice(place, input, words, written.unwrap_or_default())),
+                    None => self.report(
+                        f,
+                        sentences::unknown_choice(place, input, words, written.unwrap_or_default()),
+                    ),
                 }
             }
-            (Declared::Resource(kind), Wire::Resource(resource)) if resource.kind == *kind => Wire::Resource(resource),
+            (Declared::Resource(kind), Wire::Resource(resource)) if resource.kind == *kind => {
+                Wire::Resource(resource)
+            }
             (Declared::Resource(_), Wire::None) => Wire::None,
             (Declared::Text, Wire::Text(text)) => Wire::Text(text),
             (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire,
@@ -280,7 +289,8 @@ impl<'a> Checker<'a> {
         let library = self.library;
         let mut readers: Vec<String> = Vec::new();
         for name in library.callable_names() {
-            let first = library.callables(name).iter().filter_map(|callable| self.head(*callable)?.inputs.first());
+            let first =
+                library.callables(name).iter().filter_map(|callable| self.head(*callable)?.inputs.first());
             if first.into_iter().any(|input| types::kind_of(&input.ty) == Some(kind)) {
                 readers.push(name.to_owned());
             }

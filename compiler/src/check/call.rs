@@ -29,7 +29,14 @@ impl<'a> Checker<'a> {
     }
 
     /// `base.name<n>(arguments)`: the base is the first argument.
-    pub(super) fn method(&mut self, f: &mut Frame<'a>, base: Wire, base_place: Place, call: &'a Call, span: Span) -> Wire {
+    pub(super) fn method(
+        &mut self,
+        f: &mut Frame<'a>,
+        base: Wire,
+        base_place: Place,
+        call: &'a Call,
+        span: Span,
+    ) -> Wire {
         let place = self.place(f, span);
         let arguments = self.given(f, &call.arguments);
         if let Some(view) = view_of(&base)
@@ -49,7 +56,11 @@ impl<'a> Checker<'a> {
             if let Some(wire) = self.special(f, call, &given, place) {
                 return wire;
             }
-            return if sampled { self.no_view(f, call, &given[0]) } else { self.no_callable(f, call, &given) };
+            return if sampled {
+                self.no_view(f, call, &given[0])
+            } else {
+                self.no_callable(f, call, &given)
+            };
         }
         self.call_one_of(f, &candidates, call, given, place)
     }
@@ -59,7 +70,8 @@ impl<'a> Checker<'a> {
         let name = &call.name.text;
         let at = self.place(f, call.name.span);
         let found = types::describe(&base.wire, |v| f.builder.ty(v));
-        let views: Vec<String> = KINDS.iter().filter(|kind| kind.view.is_some()).map(|kind| format!("`{}`", kind.name)).collect();
+        let views: Vec<String> =
+            KINDS.iter().filter(|kind| kind.view.is_some()).map(|kind| format!("`{}`", kind.name)).collect();
         let mut error = sentences::bad_receiver(at, name, &found, &views);
         if let Wire::Resource(resource) = &base.wire
             && let Some((field, _)) = resource.views.first()
@@ -70,7 +82,14 @@ impl<'a> Checker<'a> {
     }
 
     /// A call of an item of an imported file.
-    pub(super) fn imported_call(&mut self, f: &mut Frame<'a>, alias: &str, module: usize, call: &'a Call, span: Span) -> Wire {
+    pub(super) fn imported_call(
+        &mut self,
+        f: &mut Frame<'a>,
+        alias: &str,
+        module: usize,
+        call: &'a Call,
+        span: Span,
+    ) -> Wire {
         let place = self.place(f, span);
         let given = self.given(f, &call.arguments);
         let candidates = self.own_callables(module, &call.name.text);
@@ -80,7 +99,8 @@ impl<'a> Checker<'a> {
                 return self.report(f, names::value_as_node(at, &format!("{alias}.{}", call.name.text)));
             }
             let near = self.near_item(module, &call.name.text);
-            return self.report(f, crate::diagnostic::imports::no_such_item(at, alias, &call.name.text, near));
+            return self
+                .report(f, crate::diagnostic::imports::no_such_item(at, alias, &call.name.text, near));
         }
         self.call_one_of(f, &candidates, call, given, place)
     }
@@ -158,7 +178,8 @@ impl<'a> Checker<'a> {
         }
         let heads: Vec<(Callable, Head<'a>)> =
             candidates.iter().filter_map(|callable| Some((*callable, self.head(*callable)?))).collect();
-        let fits = |head: &Head<'a>, n: usize| head.inputs.iter().zip(&given).take(n).all(|(i, g)| accepts(f, i, g));
+        let fits =
+            |head: &Head<'a>, n: usize| head.inputs.iter().zip(&given).take(n).all(|(i, g)| accepts(f, i, g));
         let chosen = heads
             .iter()
             .find(|(_, head)| given.len() <= head.inputs.len() && fits(head, given.len()))
@@ -173,10 +194,9 @@ impl<'a> Checker<'a> {
 
     /// Reports the arguments that are unknown names, in a call that is wrong elsewhere too.
     fn words(&mut self, f: &mut Frame<'a>, candidates: &[Callable], given: &[Given<'a>]) {
-        let inputs = candidates.iter().filter_map(|callable| self.head(*callable)).flat_map(|head| head.inputs);
-        let chooses = |word: &str, input: &Input| {
-            matches!(&input.ty.kind, TypeKind::Choice(words) if words.iter().any(|known| known.text == word))
-        };
+        let inputs =
+            candidates.iter().filter_map(|callable| self.head(*callable)).flat_map(|head| head.inputs);
+        let chooses = |word: &str, input: &Input| matches!(&input.ty.kind, TypeKind::Choice(words) if words.iter().any(|known| known.text == word));
         let inputs: Vec<&'a Input> = inputs.collect();
         for argument in given {
             if let Wire::Word(word, at) = &argument.wire
@@ -199,7 +219,8 @@ impl<'a> Checker<'a> {
         if let Some(Wire::Word(word, at)) = first.map(|given| &given.wire) {
             return self.unknown_value(f, word, *at);
         }
-        let found = first.map_or_else(|| "nothing".to_owned(), |given| types::describe(&given.wire, |v| f.builder.ty(v)));
+        let found = first
+            .map_or_else(|| "nothing".to_owned(), |given| types::describe(&given.wire, |v| f.builder.ty(v)));
         let accepted = heads.iter().filter_map(|(_, head)| head.inputs.first());
         let accepted: Vec<String> = accepted.map(|input| format!("`{}`", types::show(&input.ty))).collect();
         let at = first.map_or(place, |given| given.place);
@@ -215,7 +236,9 @@ impl<'a> Checker<'a> {
         given: Vec<Given<'a>>,
         place: Place,
     ) -> Wire {
-        let Some(bound) = self.bind_arguments(f, head, call.dim.as_ref(), given, place) else { return Wire::Unknown };
+        let Some(bound) = self.bind_arguments(f, head, call.dim.as_ref(), given, place) else {
+            return Wire::Unknown;
+        };
         f.builder.set_place(place);
         match callable {
             Callable::Node(module, item) => self.call_node(f, module, item, bound, place),
@@ -227,8 +250,20 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn call_node(&mut self, f: &mut Frame<'a>, module: usize, item: usize, bound: Bound, place: Place) -> Wire {
-        let mut key = Key { module, item, dims: bound.dims.iter().map(|(_, width)| *width).collect(), arguments: vec![] };
+    fn call_node(
+        &mut self,
+        f: &mut Frame<'a>,
+        module: usize,
+        item: usize,
+        bound: Bound,
+        place: Place,
+    ) -> Wire {
+        let mut key = Key {
+            module,
+            item,
+            dims: bound.dims.iter().map(|(_, width)| *width).collect(),
+            arguments: vec![],
+        };
         let mut arguments = Vec::new();
         for wire in bound.wires {
             let argument = match wire {
@@ -265,7 +300,12 @@ impl<'a> Checker<'a> {
         let callee = &self.functions[id.0 as usize];
         let known: Vec<_> = callee.outputs.iter().map(|(_, value)| callee.operation(*value)).collect();
         let outputs = if known.iter().all(|operation| matches!(operation, Operation::Constant(_))) {
-            known.iter().filter_map(|op| if let Operation::Constant(c) = op { Some(f.builder.constant(*c)) } else { None }).collect()
+            known
+                .iter()
+                .filter_map(
+                    |op| if let Operation::Constant(c) = op { Some(f.builder.constant(*c)) } else { None },
+                )
+                .collect()
         } else {
             f.builder.call(id, callee, arguments)
         };
@@ -275,14 +315,22 @@ impl<'a> Checker<'a> {
     }
 
     /// Calls that no row describes: constructors of vectors, `dx`, `dy`, `given`.
-    fn special(&mut self, f: &mut Frame<'a>, call: &'a Call, given: &[Given<'a>], place: Place) -> Option<Wire> {
+    fn special(
+        &mut self,
+        f: &mut Frame<'a>,
+        call: &'a Call,
+        given: &[Given<'a>],
+        place: Place,
+    ) -> Option<Wire> {
         let name = call.name.text.as_str();
         if let Some((scalar, width)) = types::vector_constructor(name) {
             return Some(self.vector(f, call, scalar, width, given, place));
         }
         match name {
             "given" => Some(self.is_given(f, given, place)),
-            "dx" | "dy" => Some(self.derivative(f, if name == "dx" { Axis::X } else { Axis::Y }, given, place)),
+            "dx" | "dy" => {
+                Some(self.derivative(f, if name == "dx" { Axis::X } else { Axis::Y }, given, place))
+            }
             "fold_sprites" | "mat2" | "mat3" => Some(self.not_yet(f, place, name)),
             _ if LATER.contains(&name) => Some(self.not_yet(f, place, name)),
             _ => None,
@@ -300,7 +348,9 @@ impl<'a> Checker<'a> {
                 Wire::Value(f.builder.constant(crate::graph::Constant::bools(&[holds])))
             }
             [] => self.report(f, sentences::missing_argument(place, "given", "resource", "resource")),
-            [_, second, ..] => self.report(f, sentences::too_many_arguments(second.place, "given", &["resource"])),
+            [_, second, ..] => {
+                self.report(f, sentences::too_many_arguments(second.place, "given", &["resource"]))
+            }
         }
     }
 
@@ -316,7 +366,8 @@ impl<'a> Checker<'a> {
         let Some(value) = self.value(f, &one.wire, one.place) else { return Wire::Unknown };
         let value = f.builder.to_float(value);
         if !f.builder.ty(value).is_float() {
-            return self.report(f, errors::mismatch(one.place, None, "float", &types::name(f.builder.ty(value))));
+            return self
+                .report(f, errors::mismatch(one.place, None, "float", &types::name(f.builder.ty(value))));
         }
         let ty = f.builder.ty(value);
         Wire::Value(f.builder.push(Operation::Derivative(value, axis), ty))
@@ -352,7 +403,8 @@ impl<'a> Checker<'a> {
                 (Scalar::Int, Some(Scalar::Float)) => f.builder.to_int(value),
                 (wanted, Some(found)) if wanted == found => value,
                 _ => {
-                    let (wanted, found) = (types::name(Type::Vector(scalar, 1)), types::name(f.builder.ty(value)));
+                    let (wanted, found) =
+                        (types::name(Type::Vector(scalar, 1)), types::name(f.builder.ty(value)));
                     return self.report(f, errors::mismatch(argument.place, None, &wanted, &found));
                 }
             };
@@ -406,7 +458,9 @@ impl<'a> Checker<'a> {
                 Some(slot) => {
                     let first = slot.as_ref().map_or(place, |(_, first)| *first);
                     let input = argument.name.map_or(inputs[0], |name| name.text.as_str());
-                    return Some(self.report(f, sentences::argument_twice(argument.place, name, input, first)));
+                    return Some(
+                        self.report(f, sentences::argument_twice(argument.place, name, input, first)),
+                    );
                 }
                 None => return Some(self.view_argument_error(f, name, inputs, argument)),
             }
@@ -419,7 +473,9 @@ impl<'a> Checker<'a> {
             let wanted = types::name(Type::Vector(scalar, ty.coordinates()));
             return Some(self.report(f, sentences::missing_argument(place, name, inputs[0], &wanted)));
         };
-        let Some(at) = self.coordinate(f, &at, scalar, ty.coordinates(), at_place) else { return Some(Wire::Unknown) };
+        let Some(at) = self.coordinate(f, &at, scalar, ty.coordinates(), at_place) else {
+            return Some(Wire::Unknown);
+        };
         let Ok(layer) = self.layer(f, ty, slots[1].take(), name, place) else { return Some(Wire::Unknown) };
         f.builder.set_place(place);
         if name == "texel" {
@@ -430,7 +486,13 @@ impl<'a> Checker<'a> {
         Some(Wire::Value(f.builder.sample(view, at, layer, level)))
     }
 
-    fn view_argument_error(&mut self, f: &mut Frame<'a>, name: &str, inputs: &[&str], argument: &Given<'a>) -> Wire {
+    fn view_argument_error(
+        &mut self,
+        f: &mut Frame<'a>,
+        name: &str,
+        inputs: &[&str],
+        argument: &Given<'a>,
+    ) -> Wire {
         let error = match argument.name {
             Some(written) => {
                 let near = self.near(&written.text, inputs.iter().copied());
@@ -442,10 +504,18 @@ impl<'a> Checker<'a> {
     }
 
     /// A coordinate has as many components as the view; a scalar does not spread here.
-    fn coordinate(&mut self, f: &mut Frame<'a>, wire: &Wire, scalar: Scalar, width: u8, place: Place) -> Option<Value> {
+    fn coordinate(
+        &mut self,
+        f: &mut Frame<'a>,
+        wire: &Wire,
+        scalar: Scalar,
+        width: u8,
+        place: Place,
+    ) -> Option<Value> {
         let value = self.value(f, wire, place)?;
         if f.builder.ty(value).width() != width {
-            let (wanted, found) = (types::name(Type::Vector(scalar, width)), types::name(f.builder.ty(value)));
+            let (wanted, found) =
+                (types::name(Type::Vector(scalar, width)), types::name(f.builder.ty(value)));
             self.report(f, errors::mismatch(place, None, &wanted, &found));
             return None;
         }
@@ -475,7 +545,12 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn level(&mut self, f: &mut Frame<'a>, ty: crate::graph::View, slots: &[Option<(Wire, Place)>; 4]) -> Option<Level> {
+    fn level(
+        &mut self,
+        f: &mut Frame<'a>,
+        ty: crate::graph::View,
+        slots: &[Option<(Wire, Place)>; 4],
+    ) -> Option<Level> {
         if let Some((wire, at)) = &slots[2] {
             return self.coerce_value(f, wire, Scalar::Float, 1, *at).map(Level::Level);
         }
@@ -491,13 +566,19 @@ impl<'a> Checker<'a> {
         if given.iter().any(|given| matches!(given.wire, Wire::Word(..))) {
             // A word may be a choice of whatever was meant.
             let names = self.library.callable_names();
-            let all: Vec<Callable> = names.iter().flat_map(|name| self.library.callables(name)).copied().collect();
+            let all: Vec<Callable> =
+                names.iter().flat_map(|name| self.library.callables(name)).copied().collect();
             self.words(f, &all, given);
         }
         let place = self.place(f, call.name.span);
         let name = call.name.text.as_str();
         if self.is_value(f, name) {
-            if f.scopes.iter().rev().find_map(|scope| scope.get(name)).is_some_and(|wire| matches!(wire, Wire::Unknown)) {
+            if f.scopes
+                .iter()
+                .rev()
+                .find_map(|scope| scope.get(name))
+                .is_some_and(|wire| matches!(wire, Wire::Unknown))
+            {
                 return Wire::Unknown;
             }
             return self.report(f, names::value_as_node(place, name));
@@ -511,7 +592,8 @@ impl<'a> Checker<'a> {
 }
 
 /// What `special` knows, for suggestions.
-const SPECIAL: &[&str] = &["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "dx", "dy", "sample", "texel"];
+const SPECIAL: &[&str] =
+    &["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "dx", "dy", "sample", "texel"];
 
 fn word(expr: &Expr) -> Option<&str> {
     match &expr.kind {
@@ -547,7 +629,8 @@ fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, given: &Given
     match (&given.wire, types::scalar_of(&input.ty)) {
         (Wire::Value(value), Some(wanted)) => {
             let ty = f.builder.ty(*value);
-            let width = types::fixed_width(&input.ty).is_none_or(|width| ty.width() == 1 || ty.width() == width);
+            let width =
+                types::fixed_width(&input.ty).is_none_or(|width| ty.width() == 1 || ty.width() == width);
             width && ty.scalar().is_some_and(|found| types::widens(found, wanted))
         }
         (Wire::Resource(resource), None) => types::kind_of(&input.ty) == Some(resource.kind),

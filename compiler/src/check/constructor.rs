@@ -2,7 +2,7 @@
 
 use super::arguments::{Bound, Head};
 use super::wire::{ResourceWire, Wire};
-use super::{Checker, Frame};
+use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, ResourceView, Scalar, Type, ViewId};
 use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource};
@@ -11,7 +11,14 @@ use texgraph_grammar::syntax::Input;
 
 impl<'a> Checker<'a> {
     /// Makes the resource of a constructor call, or finds the one made before.
-    pub(super) fn construct(&mut self, f: &mut Frame<'a>, kind: usize, head: Head<'a>, bound: Bound, place: Place) -> Wire {
+    pub(super) fn construct(
+        &mut self,
+        f: &mut Frame<'a>,
+        kind: usize,
+        head: Head<'a>,
+        bound: Bound,
+        place: Place,
+    ) -> Wire {
         let mut values = Vec::new();
         for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
             match argument(f, input, wire, *at) {
@@ -37,7 +44,7 @@ impl<'a> Checker<'a> {
                     self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
                 }
             }
-            self.resource_wires.push((kind, views, made.constants.clone()));
+            self.resource_wires.push(ResourceFields { kind, views, constants: made.constants.clone() });
             self.resources.push(Resource {
                 name: self.fresh_name(&f.current),
                 label: String::new(),
@@ -60,7 +67,12 @@ impl<'a> Checker<'a> {
     }
 
     /// A field of a resource.
-    pub(super) fn resource_field(&mut self, f: &mut Frame<'a>, resource: &Rc<ResourceWire>, name: &str) -> Option<Wire> {
+    pub(super) fn resource_field(
+        &mut self,
+        f: &mut Frame<'a>,
+        resource: &Rc<ResourceWire>,
+        name: &str,
+    ) -> Option<Wire> {
         if let Some((_, constant)) = resource.constants.iter().find(|(field, _)| *field == name) {
             return Some(Wire::Value(f.builder.constant(*constant)));
         }

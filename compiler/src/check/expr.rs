@@ -9,7 +9,9 @@ use crate::graph::{Constant, Scalar, Type, Value};
 use crate::intrinsic::{COMPONENT, Intrinsic, NEGATE, NEGATE_INT, NOT};
 use crate::library::Callable;
 use std::rc::Rc;
-use texgraph_grammar::syntax::{BinaryOperator, ChainLink, Expr, ExprKind, Name, Postfix, Span, UnaryOperator};
+use texgraph_grammar::syntax::{
+    BinaryOperator, ChainLink, Expr, ExprKind, Name, Postfix, Span, UnaryOperator,
+};
 
 impl<'a> Checker<'a> {
     /// What an expression gives. Recursion is bounded by the nesting of the text.
@@ -26,7 +28,9 @@ impl<'a> Checker<'a> {
             }
             ExprKind::Float(_) => self.report(f, errors::float_too_large(place)),
             ExprKind::Bool(value) => Wire::Value(f.builder.constant(Constant::bools(&[*value]))),
-            ExprKind::Color(channels) => Wire::Value(f.builder.constant(Constant::floats(&crate::color::linear(*channels)))),
+            ExprKind::Color(channels) => {
+                Wire::Value(f.builder.constant(Constant::floats(&crate::color::linear(*channels))))
+            }
             ExprKind::Text(text) => Wire::Text(text.clone()),
             ExprKind::Name(name) => self.name(f, name, place),
             ExprKind::Paren(inner) => self.expr(f, inner),
@@ -85,17 +89,24 @@ impl<'a> Checker<'a> {
             return self.report(f, names::node_as_value(place, name));
         }
         f.unknown.insert(name);
-        let stem = |import: &crate::module::Import| self.modules[import.module].path.rsplit('/').next()?.strip_suffix(".tex");
+        let stem = |import: &crate::module::Import| {
+            self.modules[import.module].path.rsplit('/').next()?.strip_suffix(".tex")
+        };
         if module.imports.iter().any(|import| import.alias.is_none() && stem(import) == Some(name)) {
             return self.report(f, names::missing_alias(place, name));
         }
         let near = {
             // What the statement itself binds can't be meant.
-            let own = f.order.get(f.next).and_then(|step| f.steps.get(*step)).map_or(Vec::new(), super::Step::names);
+            let own = f
+                .order
+                .get(f.next)
+                .and_then(|step| f.steps.get(*step))
+                .map_or(Vec::new(), super::Step::names);
             let scoped = f.scopes.iter().flat_map(|scope| scope.keys().copied());
             let later = f.steps.iter().flat_map(super::Step::names);
             let items = self.globals[f.module].keys().map(String::as_str);
-            let aliases = module.imports.iter().filter_map(|import| Some(import.alias.as_ref()?.text.as_str()));
+            let aliases =
+                module.imports.iter().filter_map(|import| Some(import.alias.as_ref()?.text.as_str()));
             let known = scoped.chain(later).chain(items).chain(aliases);
             self.near(name, known.filter(|known| !own.contains(known)))
         };
@@ -219,7 +230,11 @@ impl<'a> Checker<'a> {
     fn swizzle(&mut self, f: &mut Frame<'a>, value: Value, name: &Name, place: Place) -> Wire {
         let width = f.builder.ty(value).width();
         let components = ["xyzw", "rgba"].iter().find_map(|set| {
-            name.text.chars().map(|c| set.find(c)).collect::<Option<Vec<usize>>>().filter(|found| found.len() <= 4)
+            name.text
+                .chars()
+                .map(|c| set.find(c))
+                .collect::<Option<Vec<usize>>>()
+                .filter(|found| found.len() <= 4)
         });
         let components = components.filter(|found| found.iter().all(|i| *i < usize::from(width)));
         let Some(components) = components else {
@@ -249,9 +264,17 @@ impl<'a> Checker<'a> {
         Wire::Value(f.builder.builtin(COMPONENT, &[vector, index]))
     }
 
-    fn unary(&mut self, f: &mut Frame<'a>, operators: &[(UnaryOperator, Span)], operand: &'a Expr, span: Span) -> Wire {
+    fn unary(
+        &mut self,
+        f: &mut Frame<'a>,
+        operators: &[(UnaryOperator, Span)],
+        operand: &'a Expr,
+        span: Span,
+    ) -> Wire {
         // The least int has no positive counterpart, so its literal only works with its sign.
-        if let (ExprKind::Int(Some(2_147_483_648)), [.., (UnaryOperator::Negate, _)]) = (&operand.kind, operators) {
+        if let (ExprKind::Int(Some(2_147_483_648)), [.., (UnaryOperator::Negate, _)]) =
+            (&operand.kind, operators)
+        {
             let least = f.builder.constant(Constant::ints(&[i32::MIN]));
             return self.prefix(f, &operators[..operators.len() - 1], least, span);
         }
@@ -263,7 +286,13 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn prefix(&mut self, f: &mut Frame<'a>, operators: &[(UnaryOperator, Span)], mut value: Value, span: Span) -> Wire {
+    fn prefix(
+        &mut self,
+        f: &mut Frame<'a>,
+        operators: &[(UnaryOperator, Span)],
+        mut value: Value,
+        span: Span,
+    ) -> Wire {
         let place = self.place(f, span);
         f.builder.set_place(place);
         for (operator, _) in operators.iter().rev() {
@@ -315,7 +344,9 @@ impl<'a> Checker<'a> {
             let accepted = self.accepted(link.operator);
             let at = self.place(f, link.operator_span);
             let mut diagnostic = errors::no_overload(at, link.operator.symbol(), &found, &accepted);
-            diagnostic = diagnostic.related(a_place, format!("`{}`", found[0])).related(b_place, format!("`{}`", found[1]));
+            diagnostic = diagnostic
+                .related(a_place, format!("`{}`", found[0]))
+                .related(b_place, format!("`{}`", found[1]));
             self.report(f, diagnostic);
             return None;
         };
@@ -355,7 +386,8 @@ impl<'a> Checker<'a> {
     }
 
     fn accepted(&self, operator: BinaryOperator) -> Vec<String> {
-        let signatures = self.library.callables(operator.symbol()).iter().filter_map(|c| self.library.signature(*c));
+        let signatures =
+            self.library.callables(operator.symbol()).iter().filter_map(|c| self.library.signature(*c));
         let mut accepted: Vec<String> = signatures
             .filter_map(|signature| {
                 let first = signature.inputs.first()?;
@@ -397,15 +429,24 @@ impl<'a> Checker<'a> {
     }
 
     /// Nested choices from the arms, the last one unconditional.
-    fn select(&mut self, f: &mut Frame<'a>, conditions: &[(Option<Value>, Place)], arms: Vec<(Wire, Place)>) -> Wire {
+    fn select(
+        &mut self,
+        f: &mut Frame<'a>,
+        conditions: &[(Option<Value>, Place)],
+        arms: Vec<(Wire, Place)>,
+    ) -> Wire {
         if let ([], [(only, _)]) = (conditions, arms.as_slice()) {
             return only.clone();
         }
-        if arms.iter().any(|(wire, _)| matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::Text(_) | Wire::None)) {
+        if arms
+            .iter()
+            .any(|(wire, _)| matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::Text(_) | Wire::None))
+        {
             let place = conditions.first().map_or(Place::default(), |(_, place)| *place);
             return self.report(f, rates::choice_not_constant(place));
         }
-        let values: Vec<Option<Value>> = arms.iter().map(|(wire, place)| self.value(f, wire, *place)).collect();
+        let values: Vec<Option<Value>> =
+            arms.iter().map(|(wire, place)| self.value(f, wire, *place)).collect();
         let Some(values) = values.into_iter().collect::<Option<Vec<Value>>>() else { return Wire::Unknown };
         let Some(values) = self.common_type(f, values, &arms) else { return Wire::Unknown };
         let mut values = values.into_iter().rev();
@@ -418,18 +459,25 @@ impl<'a> Checker<'a> {
     }
 
     /// Arms widen to a common type.
-    fn common_type(&mut self, f: &mut Frame<'a>, values: Vec<Value>, arms: &[(Wire, Place)]) -> Option<Vec<Value>> {
+    fn common_type(
+        &mut self,
+        f: &mut Frame<'a>,
+        values: Vec<Value>,
+        arms: &[(Wire, Place)],
+    ) -> Option<Vec<Value>> {
         let types: Vec<Type> = values.iter().map(|value| f.builder.ty(*value)).collect();
         let float = types.iter().any(|ty| ty.is_float());
         let scalar = if float { Scalar::Float } else { types.first()?.scalar()? };
         let width = types.iter().map(|ty| ty.width()).max()?;
         let wanted = Type::Vector(scalar, width);
         let fits = |ty: &Type| {
-            ty.scalar().is_some_and(|found| types::widens(found, scalar)) && (ty.width() == 1 || ty.width() == width)
+            ty.scalar().is_some_and(|found| types::widens(found, scalar))
+                && (ty.width() == 1 || ty.width() == width)
         };
         if let Some(odd) = types.iter().position(|ty| !fits(ty)) {
             let like = types.iter().position(fits).unwrap_or(0);
-            let (odd_name, like_name) = (types::name(types[odd]), types::name(types.get(like).copied().unwrap_or(wanted)));
+            let (odd_name, like_name) =
+                (types::name(types[odd]), types::name(types.get(like).copied().unwrap_or(wanted)));
             self.report(f, errors::arms_differ(arms[odd].1, &like_name, &odd_name, arms[like].1));
             return None;
         }

@@ -79,7 +79,12 @@ impl<'a> Checker<'a> {
     }
 
     /// Whether the next step is taken; None when that is wrong or not known.
-    fn goes_on(&mut self, f: &mut Frame<'a>, fold: &'a Fold, accumulators: &[(&'a str, Value)]) -> Option<bool> {
+    fn goes_on(
+        &mut self,
+        f: &mut Frame<'a>,
+        fold: &'a Fold,
+        accumulators: &[(&'a str, Value)],
+    ) -> Option<bool> {
         let Some(condition) = &fold.condition else { return Some(true) };
         let at = self.place(f, condition.span);
         f.scopes.push(scope(accumulators));
@@ -106,7 +111,13 @@ impl<'a> Checker<'a> {
         let needs: Vec<Vec<usize>> = body
             .statements
             .iter()
-            .map(|s| Free::of(order::value_of(s)).values.iter().filter_map(|name| binder.get(name).copied()).collect())
+            .map(|s| {
+                Free::of(order::value_of(s))
+                    .values
+                    .iter()
+                    .filter_map(|name| binder.get(name).copied())
+                    .collect()
+            })
             .collect();
         let (order, rings) = order::sort(&needs);
         for ring in &rings {

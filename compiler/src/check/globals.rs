@@ -65,7 +65,8 @@ pub fn name_of(item: &Item) -> Option<&Name> {
 /// that leads to it from the main file, which is the last.
 pub fn aliases(modules: &[Module], library: usize) -> Vec<String> {
     let mut prefixes: Vec<Option<String>> = vec![None; modules.len()];
-    let mut stack = if modules.len() > library { vec![(modules.len() - 1, String::new())] } else { Vec::new() };
+    let mut stack =
+        if modules.len() > library { vec![(modules.len() - 1, String::new())] } else { Vec::new() };
     while let Some((module, prefix)) = stack.pop() {
         if prefixes[module].is_some() {
             continue;
@@ -175,7 +176,14 @@ impl<'a> Checker<'a> {
         }
     }
 
-    pub(super) fn set_global(&mut self, f: &mut Frame<'a>, name: &'a Name, doc: &str, wire: Wire, place: Place) {
+    pub(super) fn set_global(
+        &mut self,
+        f: &mut Frame<'a>,
+        name: &'a Name,
+        doc: &str,
+        wire: Wire,
+        place: Place,
+    ) {
         let global = match &wire {
             Wire::Value(value) => match f.builder.as_constant(*value) {
                 Some(constant) => Global::Constant(constant),
@@ -216,7 +224,9 @@ impl<'a> Checker<'a> {
     fn resource_of(&self, f: &Frame<'a>, wire: &super::ResourceWire) -> Option<usize> {
         let (_, value) = wire.views.first()?;
         match f.builder.operation(*value) {
-            crate::graph::Operation::View(id) => self.views.get(id.0 as usize).map(|view| view.resource as usize),
+            crate::graph::Operation::View(id) => {
+                self.views.get(id.0 as usize).map(|view| view.resource as usize)
+            }
             _ => None,
         }
     }
@@ -296,7 +306,9 @@ impl<'a> Checker<'a> {
         }
         let (low, mut high) = (ends[0], ends[1]);
         if !range.inclusive && scalar == Scalar::Int {
-            high = Constant::ints(&(0..usize::from(width)).map(|i| high.int(i).wrapping_sub(1)).collect::<Vec<_>>());
+            high = Constant::ints(
+                &(0..usize::from(width)).map(|i| high.int(i).wrapping_sub(1)).collect::<Vec<_>>(),
+            );
         }
         if !within(&low, &low, &high) {
             let place = self.place(f, range.span);

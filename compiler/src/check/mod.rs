@@ -54,13 +54,25 @@ pub struct Checker<'a> {
     functions: Vec<Function>,
     params: Vec<Param>,
     resources: Vec<Resource>,
-    resource_wires: Vec<(usize, Vec<ViewId>, Vec<(&'static str, crate::graph::Constant)>)>,
+    resource_wires: Vec<ResourceFields>,
     views: Vec<ResourceView>,
     diagnostics: Vec<Diagnostic>,
     /// Nodes made or being made.
     started: usize,
+    /// Values of the functions made.
+    values: usize,
+    /// The limit on values was reported.
+    overfull: bool,
     /// The limit on nodes was reported.
     full: bool,
+}
+
+/// The fields of a resource of the program.
+struct ResourceFields {
+    /// Row of the table of kinds.
+    kind: usize,
+    views: Vec<ViewId>,
+    constants: Vec<(&'static str, crate::graph::Constant)>,
 }
 
 /// One thing to do in a function: bind names, assign an output, or declare a param.
@@ -131,6 +143,8 @@ impl<'a> Checker<'a> {
             views: Vec::new(),
             diagnostics: Vec::new(),
             started: 0,
+            values: 0,
+            overfull: false,
             full: false,
         }
     }
@@ -265,7 +279,12 @@ impl<'a> Checker<'a> {
             }
             f.next += 1;
             f.progress.clear();
-            if f.builder.function().values.len() > limits::MAX_VALUES {
+            if self.values + f.builder.function().values.len() > limits::MAX_VALUES {
+                // Said once; the functions that wait for this one are over the bound too.
+                f.failed = true;
+                if std::mem::replace(&mut self.overfull, true) {
+                    return true;
+                }
                 let place = self.place(f, value.span);
                 let name = f.builder.function().name.clone();
                 self.report(f, limits::too_many_values(place, &name));
@@ -295,7 +314,8 @@ impl<'a> Checker<'a> {
             f.builder.name(value, &name.text);
         }
         // A bare word that reaches a wire is a name that nobody declared.
-        let wire = if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
+        let wire =
+            if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
         if let Some(scope) = f.scopes.last_mut()
             && !f.repeated.contains(&name.span.start)
         {
@@ -331,18 +351,19 @@ impl<'a> Checker<'a> {
             f.failed = true;
             return self.bind(f, name, Wire::Unknown);
         }
-        let wire = match declared.map(|output| types::resolve(&output.ty, &f.dims, self.modules[f.module].file)) {
-            Some(Ok(Declared::Vector(scalar, width))) => {
-                self.coerce_named(f, &wire, (scalar, width), place, Some(&name.text)).map_or(Wire::Unknown, Wire::Value)
-            }
-            Some(Ok(_)) => {
-                let ty = declared.map(|o| types::show(&o.ty)).unwrap_or_default();
-                let place = self.place(f, declared.map_or(name.span, |o| o.ty.span));
-                self.report(f, type_errors::type_not_allowed(place, &ty, "an output"))
-            }
-            Some(Err(diagnostic)) => self.report(f, diagnostic),
-            None => Wire::Unknown,
-        };
+        let wire =
+            match declared.map(|output| types::resolve(&output.ty, &f.dims, self.modules[f.module].file)) {
+                Some(Ok(Declared::Vector(scalar, width))) => self
+                    .coerce_named(f, &wire, (scalar, width), place, Some(&name.text))
+                    .map_or(Wire::Unknown, Wire::Value),
+                Some(Ok(_)) => {
+                    let ty = declared.map(|o| types::show(&o.ty)).unwrap_or_default();
+                    let place = self.place(f, declared.map_or(name.span, |o| o.ty.span));
+                    self.report(f, type_errors::type_not_allowed(place, &ty, "an output"))
+                }
+                Some(Err(diagnostic)) => self.report(f, diagnostic),
+                None => Wire::Unknown,
+            };
         self.bind(f, name, wire);
     }
 
@@ -375,6 +396,7 @@ impl<'a> Checker<'a> {
             return *id;
         }
         let id = FunctionId(self.functions.len() as u32);
+        self.values += function.values.len();
         alike.push(id);
         self.functions.push(function);
         id
@@ -392,7 +414,7 @@ impl<'a> Checker<'a> {
 
     /// A resource in the function being made.
     fn resource_value(&self, f: &mut Frame<'a>, resource: usize) -> Wire {
-        let (kind, ids, constants) = &self.resource_wires[resource];
+        let ResourceFields { kind, views: ids, constants } = &self.resource_wires[resource];
         let mut views = Vec::new();
         for id in ids {
             let ResourceView { field, view, .. } = &self.views[id.0 as usize];
@@ -431,7 +453,9 @@ impl<'a> Frame<'a> {
 impl<'a> Step<'a> {
     fn names(&self) -> Vec<&'a str> {
         match self.target {
-            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => vec![&name.text],
+            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => {
+                vec![&name.text]
+            }
             Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
             Target::Param(_) | Target::Default(_) => vec![self.target.name()],
         }

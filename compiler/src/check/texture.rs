@@ -66,9 +66,9 @@ impl<'a> Checker<'a> {
                 }
             },
         };
-        let item = module.tree.items.iter().position(|item| {
-            matches!(&item.kind, ItemKind::Texture { node, .. } if node.name.text == wanted)
-        })?;
+        let item = module.tree.items.iter().position(
+            |item| matches!(&item.kind, ItemKind::Texture { node, .. } if node.name.text == wanted),
+        )?;
         self.entry(main, item)
     }
 
@@ -179,7 +179,12 @@ impl<'a> Checker<'a> {
                 ArgumentKey::None
             }
         });
-        let key = Key { module, item, dims: dims.iter().map(|(_, width)| *width).collect(), arguments: arguments.collect() };
+        let key = Key {
+            module,
+            item,
+            dims: dims.iter().map(|(_, width)| *width).collect(),
+            arguments: arguments.collect(),
+        };
         (key, self.diagnostics.len() == before)
     }
 
@@ -195,7 +200,8 @@ impl<'a> Checker<'a> {
             match INPUTS.iter().find(|(name, _)| *name == input.name.text) {
                 None => {
                     let near = names::nearest(&input.name.text, INPUTS.iter().map(|(name, _)| *name));
-                    let known = INPUTS.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                    let known =
+                        INPUTS.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
                     let error = errors::unknown_texture_input(place, &input.name.text, &known, near);
                     self.diagnostics.push(error);
                 }
@@ -222,7 +228,11 @@ impl<'a> Checker<'a> {
     fn fixed_type(&mut self, name: &str, wanted: &[&str], ty: &texgraph_grammar::syntax::Type, file: u32) {
         if !is_one_of(ty, wanted) {
             let place = Place { file, span: ty.span };
-            self.diagnostics.push(errors::fixed_type(place, name, wanted.first().copied().unwrap_or_default()));
+            self.diagnostics.push(errors::fixed_type(
+                place,
+                name,
+                wanted.first().copied().unwrap_or_default(),
+            ));
         }
     }
 }

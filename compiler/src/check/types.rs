@@ -88,7 +88,9 @@ pub fn resolve(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Di
     match &ty.kind {
         TypeKind::Named { name, dim } => match vector(&name.text) {
             Some((scalar, Some(width))) if dim.is_none() => Ok(Declared::Vector(scalar, width)),
-            Some((scalar, None)) => Ok(Declared::Vector(scalar, width_of(&name.text, dim.as_ref(), dims, place)?)),
+            Some((scalar, None)) => {
+                Ok(Declared::Vector(scalar, width_of(&name.text, dim.as_ref(), dims, place)?))
+            }
             Some(_) => Err(types::unknown_type(place, &show(ty), Some(name.text.clone()))),
             None => resolve_other(&name.text, place),
         },
@@ -107,7 +109,9 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
         "texts" => Ok(Declared::Texts),
         "cells" => Ok(Declared::Cells),
         "mat2" | "mat3" => Err(crate::diagnostic::unsupported::not_yet(place, "matrices")),
-        _ if LATER.contains(&name) => Err(crate::diagnostic::unsupported::not_yet(place, &format!("`{name}`"))),
+        _ if LATER.contains(&name) => {
+            Err(crate::diagnostic::unsupported::not_yet(place, &format!("`{name}`")))
+        }
         _ => {
             let known = ["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "bool", "color"];
             let known = known.into_iter().chain(KINDS.iter().map(|kind| kind.name));

@@ -23,7 +23,7 @@ pub fn too_many_values(place: Place, name: &str) -> Diagnostic {
     Diagnostic::new(
         "E0402",
         place,
-        format!("`{name}` holds more than {MAX_VALUES} operations"),
+        format!("a texture may hold {MAX_VALUES} operations; in `{name}` it passes that"),
         "too large here",
     )
     .help("split the texture, or bake a part of it")

@@ -49,19 +49,25 @@ fn page(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
             (place.file as usize, range.start.min(end)..range.end.min(end))
         })
     };
-    let mut page = Page::error().with_code(diagnostic.code).with_message(&diagnostic.message);
+    let mut page = Page::error().with_code(diagnostic.code).with_message(printable(&diagnostic.message));
     if let Some((file, range)) = label(&diagnostic.place) {
-        page = page.with_label(Label::primary(file, range).with_message(&diagnostic.label));
+        page = page.with_label(Label::primary(file, range).with_message(printable(&diagnostic.label)));
     }
     for (place, text) in &diagnostic.related {
         if let Some((file, range)) = label(place) {
-            page = page.with_label(Label::secondary(file, range).with_message(text));
+            page = page.with_label(Label::secondary(file, range).with_message(printable(text)));
         }
     }
     match &diagnostic.help {
-        Some(help) => page.with_note(format!("help: {help}")),
+        Some(help) => page.with_note(printable(&format!("help: {help}"))),
         None => page,
     }
+}
+
+/// A text that can't command a terminal: control characters, which are one byte each like their
+/// stand-in, do not reach it.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_ascii_control() && c != '\n' && c != '\t' { '?' } else { c }).collect()
 }
 
 /// One line each: `file:line:column: error[E0101]: message`.
@@ -174,13 +180,16 @@ impl Position {
 /// The texts with the starts of their lines.
 struct Shown<'a> {
     sources: &'a Sources,
+    /// The texts as they are printed; places point into them just the same.
+    texts: Vec<String>,
     lines: Vec<Vec<usize>>,
 }
 
 impl<'a> Shown<'a> {
     fn new(sources: &'a Sources) -> Shown<'a> {
         let starts = |text: &str| codespan_reporting::files::line_starts(text).collect();
-        Shown { sources, lines: sources.0.iter().map(|source| starts(&source.text)).collect() }
+        let texts: Vec<String> = sources.0.iter().map(|source| printable(&source.text)).collect();
+        Shown { sources, lines: texts.iter().map(|text| starts(text)).collect(), texts }
     }
 }
 
@@ -207,7 +216,7 @@ impl<'a> Files<'a> for Shown<'a> {
     }
 
     fn source(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.sources.0.get(id).map(|source| &*source.text).ok_or(Error::FileMissing)
+        self.texts.get(id).map(String::as_str).ok_or(Error::FileMissing)
     }
 
     fn line_index(&'a self, id: usize, byte: usize) -> Result<usize, Error> {

@@ -14,7 +14,8 @@ impl Display for Graph {
 
 impl Display for Function {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let inputs: Vec<String> = self.inputs.iter().map(|slot| format!("{}: {:?}", slot.name, slot.ty)).collect();
+        let inputs: Vec<String> =
+            self.inputs.iter().map(|slot| format!("{}: {:?}", slot.name, slot.ty)).collect();
         writeln!(f, "{}({})", self.name, inputs.join(", "))?;
         for (value, operation) in self.iter() {
             write!(f, "  {value} = {}", Shown(operation))?;

@@ -206,7 +206,10 @@ impl Operation {
             Operation::Builtin(_, operands) | Operation::Compose(operands) | Operation::Call(_, operands) => {
                 operands.iter().copied().for_each(f);
             }
-            Operation::Extract(v, _) | Operation::Size(v) | Operation::Output(v, _) | Operation::Derivative(v, _) => f(*v),
+            Operation::Extract(v, _)
+            | Operation::Size(v)
+            | Operation::Output(v, _)
+            | Operation::Derivative(v, _) => f(*v),
             Operation::Select(a, b, c) => [*a, *b, *c].into_iter().for_each(f),
             Operation::Sample { view, coordinate, layer, level } => {
                 f(*view);
@@ -228,9 +231,12 @@ impl Operation {
 
     /// The same operation over other operands.
     pub fn map_operands(&self, mut f: impl FnMut(Value) -> Value) -> Operation {
-        let all = |vs: &[Value], f: &mut dyn FnMut(Value) -> Value| vs.iter().map(|v| f(*v)).collect::<Vec<_>>();
+        let all =
+            |vs: &[Value], f: &mut dyn FnMut(Value) -> Value| vs.iter().map(|v| f(*v)).collect::<Vec<_>>();
         match self {
-            Operation::Constant(_) | Operation::Input(_) | Operation::Param(_) | Operation::View(_) => self.clone(),
+            Operation::Constant(_) | Operation::Input(_) | Operation::Param(_) | Operation::View(_) => {
+                self.clone()
+            }
             Operation::Builtin(i, vs) => Operation::Builtin(*i, all(vs, &mut f)),
             Operation::Compose(vs) => Operation::Compose(all(vs, &mut f)),
             Operation::Call(id, vs) => Operation::Call(*id, all(vs, &mut f)),

@@ -11,7 +11,8 @@ pub fn evaluate(value: &Evaluate, arguments: &[Constant]) -> Constant {
     let int = |k: usize, i: usize| arguments.get(k).map_or(0, |c| c.int(i));
     let bool = |k: usize, i: usize| arguments.get(k).is_some_and(|c| c.bool(i));
     let width = arguments.first().map_or(1, |c| usize::from(c.width()));
-    let floats = |f: &dyn Fn(usize) -> f32| Constant::new(Scalar::Float, (0..width).map(|i| finite(f(i)).to_bits()));
+    let floats =
+        |f: &dyn Fn(usize) -> f32| Constant::new(Scalar::Float, (0..width).map(|i| finite(f(i)).to_bits()));
     let ints = |f: &dyn Fn(usize) -> i32| Constant::new(Scalar::Int, (0..width).map(|i| f(i) as u32));
     let bools = |f: &dyn Fn(usize) -> bool| Constant::new(Scalar::Bool, (0..width).map(|i| u32::from(f(i))));
     match *value {

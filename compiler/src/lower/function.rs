@@ -65,7 +65,12 @@ impl<'f> Body<'f> {
         self.add(Expression::Literal(literal))
     }
 
-    pub fn binary(&mut self, op: BinaryOperator, left: Handle<Expression>, right: Handle<Expression>) -> Handle<Expression> {
+    pub fn binary(
+        &mut self,
+        op: BinaryOperator,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Handle<Expression> {
         self.add(Expression::Binary { op, left, right })
     }
 
@@ -75,7 +80,11 @@ impl<'f> Body<'f> {
     }
 
     /// A call with a result, and the result's number in the text.
-    pub fn call(&mut self, function: Handle<naga::Function>, arguments: Vec<Handle<Expression>>) -> (Handle<Expression>, u32) {
+    pub fn call(
+        &mut self,
+        function: Handle<naga::Function>,
+        arguments: Vec<Handle<Expression>>,
+    ) -> (Handle<Expression>, u32) {
         let result = self.add(Expression::CallResult(function));
         self.statement(Statement::Call { function, arguments, result: Some(result) });
         (result, result.index() as u32)
@@ -124,7 +133,8 @@ impl Lowering<'_> {
         for (value, operation) in source.iter() {
             self.value(&mut body, &mut frame, value, operation);
         }
-        let outputs: Vec<Handle<Expression>> = source.outputs.iter().map(|(_, value)| frame.get(*value)).collect();
+        let outputs: Vec<Handle<Expression>> =
+            source.outputs.iter().map(|(_, value)| frame.get(*value)).collect();
         let value = match outputs.as_slice() {
             [single] => *single,
             _ => body.add(Expression::Compose { ty: result, components: outputs }),
@@ -143,14 +153,20 @@ impl Lowering<'_> {
             [single] => *single,
             _ => {
                 let members = source.outputs.iter().zip(types);
-                let members = members.map(|((slot, _), ty)| Member { name: slot.name.clone(), ty, binding: None });
+                let members =
+                    members.map(|((slot, _), ty)| Member { name: slot.name.clone(), ty, binding: None });
                 self.structure(&camel_case(name), members.collect())
             }
         }
     }
 
     /// Inputs, params, views; a sampled view is a texture and a sampler.
-    fn arguments(&mut self, source: &Function, captures: &Captures, scope: &mut Scope) -> Vec<naga::FunctionArgument> {
+    fn arguments(
+        &mut self,
+        source: &Function,
+        captures: &Captures,
+        scope: &mut Scope,
+    ) -> Vec<naga::FunctionArgument> {
         let mut slots: Vec<(String, Type)> = source.inputs.iter().map(|s| (s.name.clone(), s.ty)).collect();
         for id in &captures.params {
             let param = &self.graph.params[id.0 as usize];
@@ -164,7 +180,8 @@ impl Lowering<'_> {
         let mut arguments = Vec::new();
         for (wish, ty) in slots {
             let name = scope.name(&wish);
-            let sampler = format!("{}_sampler", wish.rsplit_once('_').map_or(wish.as_str(), |(resource, _)| resource));
+            let sampler =
+                format!("{}_sampler", wish.rsplit_once('_').map_or(wish.as_str(), |(resource, _)| resource));
             let placeholder = self.names.placeholder(name);
             let handle = self.types.get(&mut self.module.types, ty);
             arguments.push(naga::FunctionArgument { name: Some(placeholder), ty: handle, binding: None });
@@ -189,8 +206,15 @@ impl Lowering<'_> {
             }
             handle
         };
-        let inputs: Vec<Handle<Expression>> =
-            frame.function.inputs.iter().map(|slot| slot.ty).collect::<Vec<_>>().into_iter().map(|ty| argument(body, frame, ty)).collect();
+        let inputs: Vec<Handle<Expression>> = frame
+            .function
+            .inputs
+            .iter()
+            .map(|slot| slot.ty)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .map(|ty| argument(body, frame, ty))
+            .collect();
         for (value, operation) in frame.function.iter() {
             if let Operation::Input(i) = operation {
                 frame.values[value.0 as usize] = inputs.get(*i as usize).copied();
@@ -219,12 +243,20 @@ impl Lowering<'_> {
         let nest = nest.saturating_add(1);
         let plain = matches!(
             operation,
-            Operation::Constant(_) | Operation::Param(_) | Operation::View(_) | Operation::Call(..) | Operation::Input(_)
+            Operation::Constant(_)
+                | Operation::Param(_)
+                | Operation::View(_)
+                | Operation::Call(..)
+                | Operation::Input(_)
         );
         let cheap = matches!(operation, Operation::Extract(..) | Operation::Output(..));
-        let eager = matches!(operation, Operation::Sample { .. } | Operation::Texel { .. } | Operation::Derivative(..));
+        let eager = matches!(
+            operation,
+            Operation::Sample { .. } | Operation::Texel { .. } | Operation::Derivative(..)
+        );
         let author = frame.function.names.get(&value);
-        let named = !plain && (author.is_some() || eager || nest >= MAX_NEST || (!cheap && frame.uses[index] > 1));
+        let named =
+            !plain && (author.is_some() || eager || nest >= MAX_NEST || (!cheap && frame.uses[index] > 1));
         if named {
             let wish = author.map_or_else(|| hint(operation).to_owned(), String::clone);
             let name = self.names.placeholder(frame.scope.name(&wish));
@@ -277,7 +309,9 @@ pub fn splat_of(function: &Function, vector: Value) -> Option<Splat> {
         Operation::Constant(c) if c.width() > 1 && c.bits().iter().all(|bits| *bits == c.bits()[0]) => {
             Some(Splat::Constant(c.component(0)))
         }
-        Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => Some(Splat::Value(parts[0])),
+        Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => {
+            Some(Splat::Value(parts[0]))
+        }
         _ => None,
     }
 }

@@ -64,7 +64,8 @@ impl Lowering<'_> {
         v: Handle<Expression>,
         ty: Handle<naga::Type>,
     ) -> Handle<Expression> {
-        let mut part: Vec<Handle<Expression>> = (0..4).map(|i| b.add(Expression::AccessIndex { base: v, index: i })).collect();
+        let mut part: Vec<Handle<Expression>> =
+            (0..4).map(|i| b.add(Expression::AccessIndex { base: v, index: i })).collect();
         for (to, a, c) in [(0, 1, 3), (1, 2, 0), (2, 0, 1), (3, 1, 2)] {
             let product = b.binary(BinaryOperator::Multiply, part[a], part[c]);
             part[to] = b.binary(BinaryOperator::Add, part[to], product);

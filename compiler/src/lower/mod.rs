@@ -31,7 +31,8 @@ pub struct Lowered {
 
 /// Whether a name is taken by the shader language.
 pub fn is_keyword(name: &str) -> bool {
-    naga::keywords::wgsl::RESERVED_SET.contains(name) || naga::keywords::wgsl::BUILTIN_IDENTIFIER_SET.contains(name)
+    naga::keywords::wgsl::RESERVED_SET.contains(name)
+        || naga::keywords::wgsl::BUILTIN_IDENTIFIER_SET.contains(name)
 }
 
 /// What a function reads beside its inputs, in the order of its further arguments.

@@ -27,7 +27,8 @@ impl Lowering<'_> {
                 body.add(Expression::AccessIndex { base, index: u32::from(*i) })
             }
             Operation::Select(condition, yes, no) => {
-                let (condition, accept, reject) = (frame.get(*condition), self.operand(body, frame, *yes), self.operand(body, frame, *no));
+                let (condition, accept, reject) =
+                    (frame.get(*condition), self.operand(body, frame, *yes), self.operand(body, frame, *no));
                 body.add(Expression::Select { condition, accept, reject })
             }
             Operation::Sample { view, coordinate, layer, level } => {
@@ -85,7 +86,7 @@ impl Lowering<'_> {
             Scalar::Int => Literal::I32(constant.int(i)),
             Scalar::Bool => Literal::Bool(constant.bool(i)),
         };
-        let handle = if width == 1 {
+        if width == 1 {
             body.literal(literal(0))
         } else if same {
             let value = body.literal(literal(0));
@@ -94,12 +95,17 @@ impl Lowering<'_> {
             let components = (0..usize::from(width)).map(|i| body.literal(literal(i))).collect();
             let ty = self.types.get(&mut self.module.types, constant.ty());
             body.add(Expression::Compose { ty, components })
-        };
-        handle
+        }
     }
 
     /// Runs of components of one vector are written as a swizzle.
-    fn compose(&mut self, body: &mut Body, frame: &Frame, value: Value, parts: &[Value]) -> Handle<Expression> {
+    fn compose(
+        &mut self,
+        body: &mut Body,
+        frame: &Frame,
+        value: Value,
+        parts: &[Value],
+    ) -> Handle<Expression> {
         let width = parts.len() as u8;
         if parts.iter().all(|part| part == &parts[0]) {
             let value = frame.get(parts[0]);
@@ -134,7 +140,9 @@ impl Lowering<'_> {
 
     fn swizzle(&mut self, body: &mut Body, frame: &Frame, vector: Value, run: &[u8]) -> Handle<Expression> {
         let base = self.operand(body, frame, vector);
-        if usize::from(frame.function.ty(vector).width()) == run.len() && run.iter().enumerate().all(|(i, c)| i == usize::from(*c)) {
+        if usize::from(frame.function.ty(vector).width()) == run.len()
+            && run.iter().enumerate().all(|(i, c)| i == usize::from(*c))
+        {
             return base;
         }
         let mut pattern = [SwizzleComponent::X; 4];
@@ -184,7 +192,8 @@ impl Lowering<'_> {
         callee: usize,
         arguments: &[Value],
     ) -> Handle<Expression> {
-        let operands: Vec<Handle<Expression>> = arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
+        let operands: Vec<Handle<Expression>> =
+            arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
         let callee = &self.functions[callee];
         let mut all = Vec::new();
         let mut push = |handle: Handle<Expression>, ty: Type| {
@@ -202,7 +211,8 @@ impl Lowering<'_> {
         }
         let (result, number) = body.call(callee.handle, all);
         let wish = if callee.is_struct { None } else { self.author_of(frame, value) };
-        let name = frame.scope.name(&wish.unwrap_or_else(|| format!("{}_of", callee.name.trim_start_matches('_'))));
+        let name =
+            frame.scope.name(&wish.unwrap_or_else(|| format!("{}_of", callee.name.trim_start_matches('_'))));
         frame.results.insert(number, name);
         result
     }
@@ -210,17 +220,30 @@ impl Lowering<'_> {
     /// What the author calls the only output of a call.
     fn author_of(&self, frame: &Frame, call: Value) -> Option<String> {
         let output = Operation::Output(call, 0);
-        frame.function.names.iter().find(|(v, _)| *frame.function.operation(**v) == output).map(|(_, name)| name.clone())
+        frame
+            .function
+            .names
+            .iter()
+            .find(|(v, _)| *frame.function.operation(**v) == output)
+            .map(|(_, name)| name.clone())
     }
 
-    fn builtin(&mut self, body: &mut Body, frame: &mut Frame, intrinsic: Intrinsic, arguments: &[Value]) -> Handle<Expression> {
+    fn builtin(
+        &mut self,
+        body: &mut Body,
+        frame: &mut Frame,
+        intrinsic: Intrinsic,
+        arguments: &[Value],
+    ) -> Handle<Expression> {
         if let [a, b] = arguments
             && matches!(intrinsic, MULTIPLY | MULTIPLY_INT)
-            && let Some(product) = self.scaled(body, frame, *a, *b).or_else(|| self.scaled(body, frame, *b, *a))
+            && let Some(product) =
+                self.scaled(body, frame, *a, *b).or_else(|| self.scaled(body, frame, *b, *a))
         {
             return product;
         }
-        let operands: Vec<Handle<Expression>> = arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
+        let operands: Vec<Handle<Expression>> =
+            arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
         let ty = arguments.first().map_or(Type::FLOAT, |v| frame.function.ty(*v));
         match intrinsic.row().form {
             Form::Operator(symbol @ ("<<" | ">>")) => self.shift(body, frame, symbol, &operands, arguments),
@@ -255,9 +278,16 @@ impl Lowering<'_> {
         }
     }
 
-    fn operator(&mut self, body: &mut Body, symbol: &str, ty: Type, operands: &[Handle<Expression>]) -> Handle<Expression> {
+    fn operator(
+        &mut self,
+        body: &mut Body,
+        symbol: &str,
+        ty: Type,
+        operands: &[Handle<Expression>],
+    ) -> Handle<Expression> {
         if let [operand] = operands {
-            let op = if symbol == "!" { naga::UnaryOperator::LogicalNot } else { naga::UnaryOperator::Negate };
+            let op =
+                if symbol == "!" { naga::UnaryOperator::LogicalNot } else { naga::UnaryOperator::Negate };
             return body.add(Expression::Unary { op, expr: *operand });
         }
         let single = ty.width() == 1 && ty.scalar() == Some(Scalar::Bool);
@@ -282,7 +312,13 @@ impl Lowering<'_> {
     }
 
     /// A vector times a scalar, where the other factor is a scalar in every component.
-    fn scaled(&mut self, body: &mut Body, frame: &Frame, vector: Value, factor: Value) -> Option<Handle<Expression>> {
+    fn scaled(
+        &mut self,
+        body: &mut Body,
+        frame: &Frame,
+        vector: Value,
+        factor: Value,
+    ) -> Option<Handle<Expression>> {
         let scalar = match (splat_of(frame.function, vector), splat_of(frame.function, factor)?) {
             (Some(_), _) => return None,
             (None, Splat::Value(scalar)) => frame.get(scalar),
@@ -310,7 +346,12 @@ impl Lowering<'_> {
     }
 
     /// A float as a colour of four: what the complete form writes.
-    pub(super) fn widened(&mut self, body: &mut Body, value: Handle<Expression>, ty: Type) -> Handle<Expression> {
+    pub(super) fn widened(
+        &mut self,
+        body: &mut Body,
+        value: Handle<Expression>,
+        ty: Type,
+    ) -> Handle<Expression> {
         let width = ty.width();
         let value = if ty.is_float() { value } else { body.convert(value, ScalarKind::Float) };
         if width == 4 {

@@ -11,9 +11,14 @@ use rustc_hash::FxHashMap;
 
 /// The globals of the module.
 struct Globals {
-    /// The uniform block, and for each of its members by name the index and type.
-    block: Option<(Handle<GlobalVariable>, Vec<(String, Type)>)>,
+    block: Option<UniformBlock>,
     views: FxHashMap<ViewId, (Handle<GlobalVariable>, Option<Handle<GlobalVariable>>)>,
+}
+
+/// The uniform block with its members' names and types, in order.
+struct UniformBlock {
+    variable: Handle<GlobalVariable>,
+    members: Vec<(String, Type)>,
 }
 
 impl Lowering<'_> {
@@ -35,7 +40,8 @@ impl Lowering<'_> {
             let resource = &self.manifest.resources[view.resource as usize];
             let Some(texture) = resource.textures.iter().find(|t| t.field == view.field) else { continue };
             let ty = self.types.get(&mut self.module.types, Type::View(view.view));
-            let variable = self.global(&texture.name, AddressSpace::Handle, ty, texture.group, texture.binding);
+            let variable =
+                self.global(&texture.name, AddressSpace::Handle, ty, texture.group, texture.binding);
             let sampler = texture.sampler.as_ref().map(|sampler| {
                 let ty = Types::sampler(&mut self.module.types);
                 self.global(&sampler.name, AddressSpace::Handle, ty, sampler.group, sampler.binding)
@@ -65,7 +71,7 @@ impl Lowering<'_> {
     }
 
     /// The params that are read, then the inputs that are the same for a draw, in offset order.
-    fn uniform_block(&mut self) -> Option<(Handle<GlobalVariable>, Vec<(String, Type)>)> {
+    fn uniform_block(&mut self) -> Option<UniformBlock> {
         let uniform = self.manifest.uniform.as_ref()?;
         let mut members: Vec<(u32, String, Type)> = Vec::new();
         for (param, public) in self.graph.params.iter().zip(&self.manifest.params) {
@@ -89,12 +95,21 @@ impl Lowering<'_> {
             .collect();
         let ty = self.structure(&camel_case(&uniform.name), fields);
         let variable = self.global(&uniform.name, AddressSpace::Uniform, ty, uniform.group, uniform.binding);
-        Some((variable, members.into_iter().map(|(_, name, ty)| (name, ty)).collect()))
+        let members = members.into_iter().map(|(_, name, ty)| (name, ty)).collect();
+        Some(UniformBlock { variable, members })
     }
 
     /// A member of the uniform block, loaded.
-    fn member(&mut self, body: &mut Body, globals: &Globals, scope: &mut Scope, name: &str) -> Handle<Expression> {
-        let Some((variable, members)) = &globals.block else { unreachable!("a param is read from a block") };
+    fn member(
+        &mut self,
+        body: &mut Body,
+        globals: &Globals,
+        scope: &mut Scope,
+        name: &str,
+    ) -> Handle<Expression> {
+        let Some(UniformBlock { variable, members }) = &globals.block else {
+            unreachable!("a param is read from a block")
+        };
         let index = members.iter().position(|(member, _)| member == name).unwrap_or(0);
         let ty = members[index].1;
         let base = body.add(Expression::GlobalVariable(*variable));
@@ -224,7 +239,8 @@ impl Lowering<'_> {
             Member { name: slot.name.clone(), ty, binding: None }
         });
         let outputs: Vec<Member> = outputs.collect();
-        let mut function = naga::Function { name: Some(self.names.placeholder(name.to_owned())), ..Default::default() };
+        let mut function =
+            naga::Function { name: Some(self.names.placeholder(name.to_owned())), ..Default::default() };
         let takes_inputs = !inputs.is_empty();
         if takes_inputs {
             let ty = self.structure(&camel_case(&format!("{}_inputs", self.prefix)), inputs);
@@ -244,7 +260,9 @@ impl Lowering<'_> {
             .collect();
         let (value, results) = self.call_plain(&mut body, globals, &mut scope, members);
         let components = if entry.outputs.len() > 1 {
-            (0..entry.outputs.len() as u32).map(|index| body.add(Expression::AccessIndex { base: value, index })).collect()
+            (0..entry.outputs.len() as u32)
+                .map(|index| body.add(Expression::AccessIndex { base: value, index }))
+                .collect()
         } else {
             vec![value]
         };

@@ -157,7 +157,11 @@ fn demand(function: &Function, own: &Known, known: &[Known], variant: &Variant) 
             Operation::Derivative(v, _) => need(*v),
             Operation::Call(callee, arguments) => {
                 let inner = known[callee.0 as usize].needed;
-                arguments.iter().enumerate().filter(|(i, _)| inner & bit(*i) != 0).for_each(|(_, v)| need(*v));
+                arguments
+                    .iter()
+                    .enumerate()
+                    .filter(|(i, _)| inner & bit(*i) != 0)
+                    .for_each(|(_, v)| need(*v));
             }
             _ => {}
         }
@@ -170,10 +174,16 @@ fn demand(function: &Function, own: &Known, known: &[Known], variant: &Variant) 
             Operation::Output(call, i) => {
                 if let Operation::Call(callee, arguments) = function.operation(*call) {
                     let inner = known[callee.0 as usize].outputs[*i as usize];
-                    arguments.iter().enumerate().filter(|(i, _)| inner & bit(*i) != 0).for_each(|(_, v)| need(*v));
+                    arguments
+                        .iter()
+                        .enumerate()
+                        .filter(|(i, _)| inner & bit(*i) != 0)
+                        .for_each(|(_, v)| need(*v));
                 }
             }
-            Operation::Builtin(..) | Operation::Compose(_) | Operation::Extract(..) => operation.for_operands(&mut need),
+            Operation::Builtin(..) | Operation::Compose(_) | Operation::Extract(..) => {
+                operation.for_operands(&mut need)
+            }
             _ => {}
         }
     }
@@ -204,9 +214,10 @@ fn variant_of(
     }
     let through = wanted.iter().zip(&callee.outputs).filter(|(wanted, _)| **wanted);
     let useful = through.map(|(_, inputs)| *inputs).fold(callee.needed, |all, one| all | one);
-    let changing = arguments.iter().enumerate().filter(|(i, v)| {
-        useful & bit(*i) != 0 && own.depends[v.0 as usize] & variant.changing != 0
-    });
+    let changing = arguments
+        .iter()
+        .enumerate()
+        .filter(|(i, v)| useful & bit(*i) != 0 && own.depends[v.0 as usize] & variant.changing != 0);
     Variant { changing: changing.map(|(i, _)| bit(i)).fold(0, |all, one| all | one), wanted }
 }
 
@@ -251,7 +262,8 @@ fn make(
         values: Vec::with_capacity(function.values.len()),
         tangents: Vec::with_capacity(function.values.len()),
     };
-    let inputs: Vec<Value> = function.inputs.iter().map(|slot| m.builder.input(slot.name.clone(), slot.ty)).collect();
+    let inputs: Vec<Value> =
+        function.inputs.iter().map(|slot| m.builder.input(slot.name.clone(), slot.ty)).collect();
     let input_tangents = tangent_inputs(&mut m, &inputs, variant, entry);
     for (old, operation) in function.iter() {
         m.builder.set_place(function.places[old.0 as usize]);
@@ -284,7 +296,12 @@ fn make(
 }
 
 /// The tangents of the inputs: of the entry what the screen says, else inputs behind the others.
-fn tangent_inputs(m: &mut Making, inputs: &[Value], variant: &Variant, entry: bool) -> Vec<Option<[Value; 2]>> {
+fn tangent_inputs(
+    m: &mut Making,
+    inputs: &[Value],
+    variant: &Variant,
+    entry: bool,
+) -> Vec<Option<[Value; 2]>> {
     let mut tangents = Vec::new();
     for (i, (slot, input)) in m.function.inputs.iter().zip(inputs).enumerate() {
         if variant.changing & bit(i) == 0 || !slot.ty.is_float() {

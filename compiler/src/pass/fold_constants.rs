@@ -5,8 +5,8 @@
 
 use crate::graph::{Constant, Function, Operation, Scalar, Value};
 use crate::intrinsic::{
-    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, MULTIPLY, MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE, SUBTRACT,
-    SUBTRACT_INT,
+    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, MULTIPLY, MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE,
+    SUBTRACT, SUBTRACT_INT,
 };
 
 /// What an operation folds to.
@@ -54,7 +54,11 @@ fn is(function: &Function, value: Value, number: i32) -> bool {
     })
 }
 
-fn identity(function: &Function, intrinsic: crate::intrinsic::Intrinsic, arguments: &[Value]) -> Option<Folded> {
+fn identity(
+    function: &Function,
+    intrinsic: crate::intrinsic::Intrinsic,
+    arguments: &[Value],
+) -> Option<Folded> {
     let is = |i: usize, number: i32| arguments.get(i).is_some_and(|v| is(function, *v, number));
     let keep = |i: usize| Some(Folded::Value(arguments[i]));
     match intrinsic {
@@ -100,7 +104,10 @@ fn compose(function: &Function, parts: &[Value]) -> Option<Folded> {
     // All components of one vector in order: the vector itself.
     let Operation::Extract(vector, 0) = function.operation(*parts.first()?) else { return None };
     let whole = usize::from(function.ty(*vector).width()) == parts.len()
-        && parts.iter().enumerate().all(|(i, v)| *function.operation(*v) == Operation::Extract(*vector, i as u8));
+        && parts
+            .iter()
+            .enumerate()
+            .all(|(i, v)| *function.operation(*v) == Operation::Extract(*vector, i as u8));
     whole.then_some(Folded::Value(*vector))
 }
 

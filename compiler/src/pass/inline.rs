@@ -66,7 +66,8 @@ fn expanded(graph: &Graph, function: &Function, ids: &[Option<FunctionId>]) -> F
     let mut stack = vec![Copying::new(function, inputs)];
     while let Some(top) = stack.last_mut() {
         let Some(operation) = top.function.values.get(top.next) else {
-            let outputs: Vec<Value> = top.function.outputs.iter().map(|(_, value)| top.value(*value)).collect();
+            let outputs: Vec<Value> =
+                top.function.outputs.iter().map(|(_, value)| top.value(*value)).collect();
             stack.pop();
             match stack.last_mut() {
                 Some(caller) => {

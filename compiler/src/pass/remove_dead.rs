@@ -17,7 +17,8 @@ pub fn run(graph: Graph) -> Graph {
         let live = live_values(function, &wanted[i], |callee, input| {
             kept[callee.0 as usize].as_ref().is_none_or(|kept| kept.inputs[input])
         });
-        let used = |i: usize| function.iter().any(|(v, op)| *op == Operation::Input(i as u32) && live[v.0 as usize]);
+        let used =
+            |i: usize| function.iter().any(|(v, op)| *op == Operation::Input(i as u32) && live[v.0 as usize]);
         let inputs: Vec<bool> = (0..function.inputs.len()).map(|i| entry || used(i)).collect();
         functions.push(rebuilt(function, &live, &inputs, &wanted[i], &kept));
         let id = FunctionId(functions.len() as u32 - 1);
@@ -126,9 +127,9 @@ fn adapted(function: &Function, operation: &Operation, values: &[Value], kept: &
         },
         (Operation::Output(call, i), Operation::Output(old_call, _)) => {
             let dropped = match function.operation(*old_call) {
-                Operation::Call(callee, _) => kept[callee.0 as usize]
-                    .as_ref()
-                    .map_or(0, |kept| kept.outputs[..i as usize].iter().filter(|keep| !**keep).count() as u32),
+                Operation::Call(callee, _) => kept[callee.0 as usize].as_ref().map_or(0, |kept| {
+                    kept.outputs[..i as usize].iter().filter(|keep| !**keep).count() as u32
+                }),
                 _ => 0,
             };
             Operation::Output(call, i - dropped)

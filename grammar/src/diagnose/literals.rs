@@ -11,9 +11,7 @@ impl Place<'_, '_> {
     pub(super) fn literal(&self) -> Guess {
         let text = self.text.to_string();
         match self.token.kind {
-            TokenKind::Number if !is_literal(self.text) => {
-                self.here(Kind::BadNumber { text, mend: None })
-            }
+            TokenKind::Number if !is_literal(self.text) => self.here(Kind::BadNumber { text, mend: None }),
             TokenKind::Color if !is_literal(self.text) => self.here(Kind::BadColor { text }),
             TokenKind::Text => self.bad_escape(),
             _ => self.leading_dot().or_else(|| self.trailing_dot()),
@@ -34,13 +32,8 @@ impl Place<'_, '_> {
             let escape = &rest[..length];
             if !is_literal(&format!("\"{escape}\"")) {
                 let start = self.token.span.start as usize + at;
-                let kind = Kind::BadEscape {
-                    escape: escape.to_string(),
-                };
-                return Some(SyntaxError {
-                    kind,
-                    span: Span::new(start, start + length),
-                });
+                let kind = Kind::BadEscape { escape: escape.to_string() };
+                return Some(SyntaxError { kind, span: Span::new(start, start + length) });
             }
             at += length;
         }
@@ -50,37 +43,24 @@ impl Place<'_, '_> {
     /// `.5`
     fn leading_dot(&self) -> Guess {
         let next = self.at(1)?;
-        if self.text != "."
-            || next.kind != TokenKind::Number
-            || next.span.start != self.token.span.end
-        {
+        if self.text != "." || next.kind != TokenKind::Number || next.span.start != self.token.span.end {
             return None;
         }
         let text = format!(".{}", self.scan.text(next));
         let mend = Some(format!("0{text}"));
         let span = self.token.span.to(next.span);
-        Some(SyntaxError {
-            kind: Kind::BadNumber { text, mend },
-            span,
-        })
+        Some(SyntaxError { kind: Kind::BadNumber { text, mend }, span })
     }
 
     /// `1.`
     fn trailing_dot(&self) -> Guess {
-        let number = self
-            .at(-2)
-            .filter(|token| token.kind == TokenKind::Number)?;
-        let dot = self
-            .at(-1)
-            .filter(|dot| dot.span.start == number.span.end)?;
+        let number = self.at(-2).filter(|token| token.kind == TokenKind::Number)?;
+        let dot = self.at(-1).filter(|dot| dot.span.start == number.span.end)?;
         if self.scan.text(dot) != "." || !self.expects("a name") {
             return None;
         }
         let text = format!("{}.", self.scan.text(number));
         let mend = Some(format!("{text}0"));
-        Some(SyntaxError {
-            kind: Kind::BadNumber { text, mend },
-            span: number.span.to(dot.span),
-        })
+        Some(SyntaxError { kind: Kind::BadNumber { text, mend }, span: number.span.to(dot.span) })
     }
 }

@@ -3,9 +3,7 @@
 use super::Formatter;
 use super::layout::{Piece, Style};
 use super::writer::Gap;
-use crate::syntax::{
-    Argument, Call, ChainLink, Expr, ExprKind, Fold, Postfix, Range, UnaryOperator,
-};
+use crate::syntax::{Argument, Call, ChainLink, Expr, ExprKind, Fold, Postfix, Range, UnaryOperator};
 
 impl Formatter<'_> {
     pub(super) fn expr(&mut self, gap: Gap, expr: &Expr) {
@@ -69,14 +67,7 @@ impl Formatter<'_> {
         let mut follows_call = matches!(base.kind, ExprKind::Call(_));
         for link in links {
             let is_method = matches!(link, Postfix::Method(..));
-            self.link(
-                if is_method && follows_call {
-                    Gap::SoftGlue
-                } else {
-                    Gap::Glue
-                },
-                link,
-            );
+            self.link(if is_method && follows_call { Gap::SoftGlue } else { Gap::Glue }, link);
             follows_call |= is_method;
         }
         self.writer.pieces.push(Piece::DedentIfBroken);
@@ -120,8 +111,7 @@ impl Formatter<'_> {
             if index > 0 {
                 self.writer.token(Gap::Space, "else");
             }
-            self.writer
-                .token(if index > 0 { Gap::Space } else { Gap::Glue }, "if");
+            self.writer.token(if index > 0 { Gap::Space } else { Gap::Glue }, "if");
             self.expr(Gap::Space, condition);
             self.arm(value);
         }
@@ -140,11 +130,7 @@ impl Formatter<'_> {
     /// A list; one of plain numbers or names fills its lines.
     fn values(&mut self, values: &[Expr]) {
         let is_plain = values.iter().all(is_plain);
-        self.open_list(
-            Gap::Glue,
-            "[",
-            if is_plain { Style::Fill } else { Style::Even },
-        );
+        self.open_list(Gap::Glue, "[", if is_plain { Style::Fill } else { Style::Even });
         for (index, value) in values.iter().enumerate() {
             let gap = self.separator(index);
             self.expr(gap, value);
@@ -179,8 +165,7 @@ impl Formatter<'_> {
 
     pub(super) fn range(&mut self, range: &Range) {
         self.expr(Gap::Space, &range.start);
-        self.writer
-            .token(Gap::Glue, if range.inclusive { "..=" } else { ".." });
+        self.writer.token(Gap::Glue, if range.inclusive { "..=" } else { ".." });
         self.expr(Gap::Glue, &range.end);
     }
 
@@ -205,8 +190,7 @@ impl Formatter<'_> {
         if !is_empty {
             self.writer.trailing_comma();
         }
-        self.writer
-            .close_bracket(if is_empty { Gap::Glue } else { Gap::SoftGlue }, bracket);
+        self.writer.close_bracket(if is_empty { Gap::Glue } else { Gap::SoftGlue }, bracket);
         self.writer.close();
     }
 }

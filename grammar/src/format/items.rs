@@ -4,8 +4,7 @@ use super::layout::{Piece, Style};
 use super::writer::{Blank, Gap};
 use super::{Assignment, Formatter};
 use crate::syntax::{
-    Body, Dim, Expr, Field, File, Input, Item, ItemKind, Name, Node, Pattern, Statement, Type,
-    TypeKind,
+    Body, Dim, Expr, Field, File, Input, Item, ItemKind, Name, Node, Pattern, Statement, Type, TypeKind,
 };
 
 impl Formatter<'_> {
@@ -33,19 +32,13 @@ impl Formatter<'_> {
                 }
             }
             ItemKind::Let { name, value } => {
-                let follows =
-                    before.is_some_and(|before| matches!(before.kind, ItemKind::Let { .. }));
+                let follows = before.is_some_and(|before| matches!(before.kind, ItemKind::Let { .. }));
                 self.writer.token(gap, "let");
                 let (start, is_joined) = (self.writer.line_start, self.writer.plain && follows);
                 self.name(Gap::Space, name);
                 self.assign(start, is_joined, value, assignments);
             }
-            ItemKind::Param {
-                name,
-                ty,
-                default,
-                range,
-            } => {
+            ItemKind::Param { name, ty, default, range } => {
                 self.writer.token(gap, "param");
                 self.name(Gap::Space, name);
                 self.ty_of(ty);
@@ -187,11 +180,7 @@ impl Formatter<'_> {
     }
 
     fn statement(&mut self, index: usize, statement: &Statement, block: &mut Vec<Assignment>) {
-        let gap = Gap::Line(if index == 0 {
-            Blank::Never
-        } else {
-            Blank::Keep
-        });
+        let gap = Gap::Line(if index == 0 { Blank::Never } else { Blank::Keep });
         self.writer.lead(gap);
         let (start, is_joined) = (self.writer.line_start, self.writer.plain && index > 0);
         match statement {
@@ -219,13 +208,7 @@ impl Formatter<'_> {
         self.writer.pieces.push(Piece::Pad(0));
         self.default(value);
         let (end, level) = (self.writer.pieces.len(), self.writer.level);
-        block.push(Assignment {
-            start,
-            pad,
-            end,
-            level,
-            is_joined,
-        });
+        block.push(Assignment { start, pad, end, level, is_joined });
     }
 }
 

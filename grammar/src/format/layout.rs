@@ -113,12 +113,7 @@ pub(super) fn fits(level: usize, width: usize) -> bool {
 /// Prints the pieces.
 pub(super) fn render(pieces: &[Piece<'_>]) -> String {
     let measures = Measures::new(pieces);
-    let mut printer = Printer {
-        out: String::new(),
-        column: 0,
-        level: 0,
-        groups: Vec::new(),
-    };
+    let mut printer = Printer { out: String::new(), column: 0, level: 0, groups: Vec::new() };
     let groups = groups(pieces, &measures);
     let stops = Stops::new(pieces);
     for (index, piece) in pieces.iter().enumerate() {
@@ -142,10 +137,7 @@ pub(super) fn render(pieces: &[Piece<'_>]) -> String {
                 let is_flat = is_simple && printer.has_room(measures.width(index, stop));
                 let links_fit = is_simple
                     && printer.has_room(group.first)
-                    && fits(
-                        printer.level + 1,
-                        group.widest + measures.width(group.end, stop),
-                    );
+                    && fits(printer.level + 1, group.widest + measures.width(group.end, stop));
                 printer.open(*style, is_flat, links_fit);
             }
             Piece::Break(flat) => {
@@ -227,11 +219,7 @@ impl Stops {
     }
 
     fn after(&self, index: usize, style: Style) -> usize {
-        if style == Style::Early {
-            self.must[index]
-        } else {
-            self.may[index]
-        }
+        if style == Style::Early { self.must[index] } else { self.may[index] }
     }
 }
 
@@ -268,11 +256,7 @@ impl Printer {
     }
 
     fn has_room(&self, width: usize) -> bool {
-        let column = if self.column == 0 {
-            self.level * INDENT
-        } else {
-            self.column
-        };
+        let column = if self.column == 0 { self.level * INDENT } else { self.column };
         column + width <= WIDTH
     }
 

@@ -88,9 +88,7 @@ impl<'s> Writer<'s> {
     /// Writes a token as the source has it.
     pub fn copy(&mut self, gap: Gap, span: Span) {
         self.lead(gap);
-        self.put(Cow::Borrowed(
-            self.source.get(span.range()).unwrap_or_default(),
-        ));
+        self.put(Cow::Borrowed(self.source.get(span.range()).unwrap_or_default()));
     }
 
     fn put(&mut self, text: Cow<'s, str>) {
@@ -139,10 +137,7 @@ impl<'s> Writer<'s> {
     pub fn drop_comma(&mut self) {
         let mut at = self.at;
         for comment in self.comments.clone() {
-            if !self.source[at..comment.span.start as usize]
-                .trim()
-                .is_empty()
-            {
+            if !self.source[at..comment.span.start as usize].trim().is_empty() {
                 break;
             }
             at = comment.span.end as usize;
@@ -157,12 +152,7 @@ impl<'s> Writer<'s> {
     pub fn finish(&mut self) {
         let (comments, _) = self.find_comments();
         let gap = Gap::Line(Blank::Keep);
-        let mut state = GapState {
-            gap,
-            is_closing: true,
-            is_placed: false,
-            ended_line: false,
-        };
+        let mut state = GapState { gap, is_closing: true, is_placed: false, ended_line: false };
         for comment in comments {
             self.write_comment(&mut state, comment);
         }
@@ -193,28 +183,15 @@ impl<'s> Writer<'s> {
         let text = self.source.get(comment.span.range()).unwrap_or_default();
         let rest = self.source[comment.span.end as usize..].trim_start_matches([' ', '\t', '\r']);
         if comment.kind != CommentKind::Block {
-            return Found {
-                text: text.trim_end().into(),
-                lines_before,
-                ends_line: true,
-            };
+            return Found { text: text.trim_end().into(), lines_before, ends_line: true };
         }
         let ends_line = rest.is_empty() || rest.starts_with('\n');
-        Found {
-            text: text.replace("\r\n", "\n").into(),
-            lines_before,
-            ends_line,
-        }
+        Found { text: text.replace("\r\n", "\n").into(), lines_before, ends_line }
     }
 
     /// Writes comments and what stands around them.
     fn write_gap(&mut self, gap: Gap, comments: Vec<Found<'s>>, lines: usize, is_closing: bool) {
-        let mut state = GapState {
-            gap,
-            is_closing,
-            is_placed: false,
-            ended_line: false,
-        };
+        let mut state = GapState { gap, is_closing, is_placed: false, ended_line: false };
         let has_comments = !comments.is_empty();
         let breaks_before = self.breaks;
         for comment in comments {
@@ -251,11 +228,7 @@ impl<'s> Writer<'s> {
         self.plain = false;
         state.ended_line = comment.ends_line;
         let is_note = comment.text.starts_with("//");
-        self.pieces.push(if is_note {
-            Piece::Note(comment.text)
-        } else {
-            Piece::Text(comment.text)
-        });
+        self.pieces.push(if is_note { Piece::Note(comment.text) } else { Piece::Text(comment.text) });
     }
 
     /// Writes the gap itself.

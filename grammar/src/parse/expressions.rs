@@ -22,24 +22,14 @@ impl OpenChain {
     /// Takes the operand of the waiting operator.
     fn push(&mut self, operand: Expr) {
         let (operator, operator_span) = (self.operator, self.operator_span);
-        self.links.push(ChainLink {
-            operator,
-            operator_span,
-            operand,
-        });
+        self.links.push(ChainLink { operator, operator_span, operand });
     }
 
     /// Takes the last operand.
     fn finish(mut self, operand: Expr) -> Expr {
         let span = self.first.span.to(operand.span);
         self.push(operand);
-        Expr {
-            span,
-            kind: ExprKind::Chain {
-                first: Box::new(self.first),
-                links: self.links,
-            },
-        }
+        Expr { span, kind: ExprKind::Chain { first: Box::new(self.first), links: self.links } }
     }
 }
 
@@ -53,9 +43,7 @@ impl<'s> Builder<'s> {
         while let Some(sign) = parts.next() {
             let operator = self.operator(&sign)?;
             let operator_span = sign.span;
-            while let Some(chain) =
-                open.pop_if(|chain| chain.operator.precedence() > operator.precedence())
-            {
+            while let Some(chain) = open.pop_if(|chain| chain.operator.precedence() > operator.precedence()) {
                 operand = chain.finish(operand);
             }
             let next = self.next_expr(&mut parts)?;
@@ -66,26 +54,15 @@ impl<'s> Builder<'s> {
                     self.forbid_chain(operator, operator_span);
                     (chain.operator, chain.operator_span) = (operator, operator_span);
                 }
-                _ => open.push(OpenChain {
-                    first: left,
-                    links: vec![],
-                    operator,
-                    operator_span,
-                }),
+                _ => open.push(OpenChain { first: left, links: vec![], operator, operator_span }),
             }
         }
-        Ok(open
-            .into_iter()
-            .rev()
-            .fold(operand, |operand, chain| chain.finish(operand)))
+        Ok(open.into_iter().rev().fold(operand, |operand, chain| chain.finish(operand)))
     }
 
     fn forbid_chain(&mut self, operator: BinaryOperator, span: Span) {
         if operator.precedence() == BinaryOperator::Less.precedence() {
-            self.errors.push(SyntaxError {
-                kind: SyntaxErrorKind::ChainedComparison,
-                span,
-            });
+            self.errors.push(SyntaxError { kind: SyntaxErrorKind::ChainedComparison, span });
         }
     }
 
@@ -106,9 +83,7 @@ impl<'s> Builder<'s> {
             Op::And,
             Op::Or,
         ];
-        let operator = ALL
-            .into_iter()
-            .find(|operator| operator.symbol() == pair.text);
+        let operator = ALL.into_iter().find(|operator| operator.symbol() == pair.text);
         operator.ok_or_else(|| self.missing("an operator"))
     }
 
@@ -116,11 +91,7 @@ impl<'s> Builder<'s> {
         let mut parts = Parts::of(pair);
         let mut operators = Vec::new();
         while let Some(prefix) = parts.accept(Rule::prefix) {
-            let operator = if prefix.text == "-" {
-                UnaryOperator::Negate
-            } else {
-                UnaryOperator::Not
-            };
+            let operator = if prefix.text == "-" { UnaryOperator::Negate } else { UnaryOperator::Not };
             operators.push((operator, prefix.span));
         }
         let operand = self.next(&mut parts, "an operand")?;
@@ -129,13 +100,7 @@ impl<'s> Builder<'s> {
             return Ok(operand);
         };
         let span = first.to(operand.span);
-        Ok(Expr {
-            span,
-            kind: ExprKind::Unary {
-                operators,
-                operand: Box::new(operand),
-            },
-        })
+        Ok(Expr { span, kind: ExprKind::Unary { operators, operand: Box::new(operand) } })
     }
 
     fn postfix(&mut self, pair: Pair<'s>) -> Built<Expr> {
@@ -147,13 +112,7 @@ impl<'s> Builder<'s> {
         if links.is_empty() {
             return Ok(base);
         }
-        Ok(Expr {
-            span,
-            kind: ExprKind::Postfix {
-                base: Box::new(base),
-                links,
-            },
-        })
+        Ok(Expr { span, kind: ExprKind::Postfix { base: Box::new(base), links } })
     }
 
     fn link(&mut self, pair: Pair<'s>) -> Built<Postfix> {
@@ -172,21 +131,11 @@ impl<'s> Builder<'s> {
     fn reference(&mut self, pair: Pair<'s>) -> Built<(Call, bool)> {
         let mut parts = Parts::of(pair);
         let name = self.next_name(&mut parts)?;
-        let dim = parts
-            .accept(Rule::call_dim)
-            .map(|dim| self.dim(dim))
-            .transpose()?;
+        let dim = parts.accept(Rule::call_dim).map(|dim| self.dim(dim)).transpose()?;
         let arguments = parts.next();
         let is_call = arguments.is_some();
         let arguments = arguments.map(|pair| self.arguments(pair)).transpose()?;
-        Ok((
-            Call {
-                name,
-                dim,
-                arguments: arguments.unwrap_or_default(),
-            },
-            is_call,
-        ))
+        Ok((Call { name, dim, arguments: arguments.unwrap_or_default() }, is_call))
     }
 
     fn arguments(&mut self, pair: Pair<'s>) -> Built<Vec<Argument>> {
@@ -195,13 +144,8 @@ impl<'s> Builder<'s> {
             let argument = self.argument(part)?;
             let before = arguments.last().and_then(|before| before.name.as_ref());
             if let (None, Some(named)) = (&argument.name, before) {
-                let kind = SyntaxErrorKind::PositionalAfterNamed {
-                    named: named.text.clone(),
-                };
-                self.errors.push(SyntaxError {
-                    kind,
-                    span: argument.value.span,
-                });
+                let kind = SyntaxErrorKind::PositionalAfterNamed { named: named.text.clone() };
+                self.errors.push(SyntaxError { kind, span: argument.value.span });
             }
             arguments.push(argument);
         }
@@ -212,11 +156,7 @@ impl<'s> Builder<'s> {
         let mut parts = Parts::of(pair);
         let name = parts.accept(Rule::name).map(|name| self.name(&name));
         let value = self.next(&mut parts, "an argument")?;
-        let value = if value.rule == Rule::lambda {
-            self.lambda(value)?
-        } else {
-            self.expr(value)?
-        };
+        let value = if value.rule == Rule::lambda { self.lambda(value)? } else { self.expr(value)? };
         Ok(Argument { name, value })
     }
 
@@ -226,21 +166,14 @@ impl<'s> Builder<'s> {
         let inputs = self.next(&mut parts, "a lambda's inputs")?;
         let inputs = self.names(inputs);
         let body = Box::new(self.next_expr(&mut parts)?);
-        Ok(Expr {
-            span,
-            kind: ExprKind::Lambda { inputs, body },
-        })
+        Ok(Expr { span, kind: ExprKind::Lambda { inputs, body } })
     }
 
     fn primary(&mut self, pair: Pair<'s>) -> Built<Expr> {
         let span = pair.span;
         let kind = match pair.rule {
             Rule::paren => ExprKind::Paren(Box::new(self.next_expr(&mut Parts::of(pair))?)),
-            Rule::list => ExprKind::List(
-                Parts::of(pair)
-                    .map(|item| self.expr(item))
-                    .collect::<Built<_>>()?,
-            ),
+            Rule::list => ExprKind::List(Parts::of(pair).map(|item| self.expr(item)).collect::<Built<_>>()?),
             Rule::choice => self.choice(pair)?,
             Rule::fold => ExprKind::Fold(Box::new(self.fold(pair)?)),
             Rule::reference => match self.reference(pair)? {
@@ -273,12 +206,7 @@ impl<'s> Builder<'s> {
         let start = Box::new(self.next_expr(&mut parts)?);
         let inclusive = self.next(&mut parts, "`..`")?.text == "..=";
         let end = Box::new(self.next_expr(&mut parts)?);
-        Ok(Range {
-            start,
-            end,
-            inclusive,
-            span,
-        })
+        Ok(Range { start, end, inclusive, span })
     }
 
     fn fold(&mut self, pair: Pair<'s>) -> Built<Fold> {
@@ -294,14 +222,7 @@ impl<'s> Builder<'s> {
         let condition = self.fold_part(&mut parts, Rule::fold_while)?;
         let body = self.next(&mut parts, "a body")?;
         let body = self.body(body)?;
-        Ok(Fold {
-            accumulators,
-            variable,
-            range,
-            max,
-            condition,
-            body,
-        })
+        Ok(Fold { accumulators, variable, range, max, condition, body })
     }
 
     fn accumulator(&mut self, pair: Pair<'s>) -> Built<(Name, Expr)> {
@@ -310,9 +231,6 @@ impl<'s> Builder<'s> {
     }
 
     fn fold_part(&mut self, parts: &mut Parts<'s>, rule: Rule) -> Built<Option<Expr>> {
-        parts
-            .accept(rule)
-            .map(|part| self.next_expr(&mut Parts::of(part)))
-            .transpose()
+        parts.accept(rule).map(|part| self.next_expr(&mut Parts::of(part))).transpose()
     }
 }

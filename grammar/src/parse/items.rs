@@ -4,8 +4,8 @@ use super::pairs::{Pair, Parts};
 use super::{Builder, Rule};
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::syntax::{
-    Body, CommentKind, Dim, Expr, Field, File, Input, Item, ItemKind, Name, Node, Pattern,
-    Signature, Statement, Text, Type, TypeKind,
+    Body, CommentKind, Dim, Expr, Field, File, Input, Item, ItemKind, Name, Node, Pattern, Signature,
+    Statement, Text, Type, TypeKind,
 };
 
 use pest::iterators::Pairs;
@@ -17,28 +17,18 @@ impl<'s> Builder<'s> {
         let file = self.nodes(pairs)?;
         let mut items: Vec<Item> = Vec::new();
         for part in Parts::of(file) {
-            let before = items
-                .last()
-                .map_or(self.offset as u32, |item| item.span.end);
+            let before = items.last().map_or(self.offset as u32, |item| item.span.end);
             items.push(self.item(part, before)?);
         }
         let first = items.first().map_or(u32::MAX, |item| item.span.start);
         let doc = self.doc(CommentKind::FileDoc, self.offset as u32, first);
-        Ok(File {
-            doc,
-            items,
-            comments: Vec::new(),
-        })
+        Ok(File { doc, items, comments: Vec::new() })
     }
 
     /// The documentation between two places: comments of a kind that begin their line.
     fn doc(&self, kind: CommentKind, start: u32, end: u32) -> String {
-        let first = self
-            .comments
-            .partition_point(|comment| comment.span.start < start);
-        let lines = self.comments[first..]
-            .iter()
-            .take_while(|comment| comment.span.start < end);
+        let first = self.comments.partition_point(|comment| comment.span.start < start);
+        let lines = self.comments[first..].iter().take_while(|comment| comment.span.start < end);
         let lines: Vec<&str> = lines
             .filter(|comment| comment.kind == kind && self.begins_line(comment.span.start as usize))
             .map(|comment| {
@@ -77,10 +67,7 @@ impl<'s> Builder<'s> {
     fn use_item(&mut self, pair: Pair<'s>) -> Built<ItemKind> {
         let mut parts = Parts::of(pair);
         let path = self.next(&mut parts, "a path")?;
-        let path = Text {
-            value: self.text(&path),
-            span: path.span,
-        };
+        let path = Text { value: self.text(&path), span: path.span };
         let alias = parts.next().map(|name| self.name(&name));
         Ok(ItemKind::Use { path, alias })
     }
@@ -98,12 +85,7 @@ impl<'s> Builder<'s> {
         let ty = self.next_type(&mut parts)?;
         let default = self.next_expr(&mut parts)?;
         let range = parts.next().map(|range| self.range(range)).transpose()?;
-        Ok(ItemKind::Param {
-            name,
-            ty,
-            default,
-            range,
-        })
+        Ok(ItemKind::Param { name, ty, default, range })
     }
 
     fn node(&mut self, parts: &mut Parts<'s>) -> Built<(Node, Option<Expr>)> {
@@ -113,21 +95,10 @@ impl<'s> Builder<'s> {
         let outputs = self.next(parts, "outputs")?;
         let outputs = self.fields(outputs)?;
         let tiles = parts.accept(Rule::tiles);
-        let tiles = tiles
-            .map(|tiles| self.next_expr(&mut Parts::of(tiles)))
-            .transpose()?;
+        let tiles = tiles.map(|tiles| self.next_expr(&mut Parts::of(tiles))).transpose()?;
         let body = self.next(parts, "a body")?;
         let body = self.body(body)?;
-        Ok((
-            Node {
-                name,
-                dims,
-                inputs,
-                outputs,
-                body,
-            },
-            tiles,
-        ))
+        Ok((Node { name, dims, inputs, outputs, body }, tiles))
     }
 
     pub(super) fn signature(&mut self, pairs: Pairs<'_, Rule>) -> Built<Signature> {
@@ -136,18 +107,11 @@ impl<'s> Builder<'s> {
         let dims = self.dims(&mut parts);
         let inputs = self.inputs(&mut parts)?;
         let output = self.next_type(&mut parts)?;
-        Ok(Signature {
-            dims,
-            inputs,
-            output,
-        })
+        Ok(Signature { dims, inputs, output })
     }
 
     fn dims(&self, parts: &mut Parts<'s>) -> Vec<Name> {
-        parts
-            .accept(Rule::dims)
-            .map(|dims| self.names(dims))
-            .unwrap_or_default()
+        parts.accept(Rule::dims).map(|dims| self.names(dims)).unwrap_or_default()
     }
 
     fn inputs(&mut self, parts: &mut Parts<'s>) -> Built<Vec<Input>> {
@@ -169,10 +133,7 @@ impl<'s> Builder<'s> {
 
     fn field(&mut self, pair: Pair<'s>) -> Built<Field> {
         let mut parts = Parts::of(pair);
-        Ok(Field {
-            name: self.next_name(&mut parts)?,
-            ty: self.next_type(&mut parts)?,
-        })
+        Ok(Field { name: self.next_name(&mut parts)?, ty: self.next_type(&mut parts)? })
     }
 
     /// A type whose inner types are built.
@@ -191,10 +152,7 @@ impl<'s> Builder<'s> {
         let mut parts = Parts::of(pair);
         let name = self.next_name(&mut parts)?;
         if let Some(dim) = parts.accept(Rule::dim) {
-            return Ok(TypeKind::Named {
-                name,
-                dim: Some(self.dim(dim)?),
-            });
+            return Ok(TypeKind::Named { name, dim: Some(self.dim(dim)?) });
         }
         let others: Vec<Name> = parts.map(|part| self.name(&part)).collect();
         if others.is_empty() {
@@ -222,10 +180,7 @@ impl<'s> Builder<'s> {
         let span = pair.span;
         let number = pair.text.parse().unwrap_or_else(|_| {
             let text = pair.text.to_string();
-            self.errors.push(SyntaxError {
-                kind: SyntaxErrorKind::NumberTooLarge { text },
-                span,
-            });
+            self.errors.push(SyntaxError { kind: SyntaxErrorKind::NumberTooLarge { text }, span });
             0
         });
         Ok(Dim::Number(number, span))
@@ -233,9 +188,7 @@ impl<'s> Builder<'s> {
 
     pub(super) fn body(&mut self, pair: Pair<'s>) -> Built<Body> {
         let span = pair.span;
-        let statements = Parts::of(pair)
-            .map(|part| self.statement(part))
-            .collect::<Built<_>>()?;
+        let statements = Parts::of(pair).map(|part| self.statement(part)).collect::<Built<_>>()?;
         Ok(Body { statements, span })
     }
 
@@ -248,11 +201,7 @@ impl<'s> Builder<'s> {
             let pattern = self.next(&mut parts, "a pattern")?;
             let pattern = self.pattern(pattern)?;
             let value = self.next_expr(&mut parts)?;
-            return Ok(Statement::Let {
-                span,
-                pattern,
-                value,
-            });
+            return Ok(Statement::Let { span, pattern, value });
         }
         let name = self.next_name(&mut parts)?;
         let value = self.next_expr(&mut parts)?;

@@ -28,13 +28,8 @@ impl<'s> Builder<'s> {
         };
         let value = digits.parse::<f64>().unwrap_or(f64::INFINITY) * unit;
         if !value.is_finite() {
-            let kind = SyntaxErrorKind::NumberTooLarge {
-                text: text.to_string(),
-            };
-            self.errors.push(SyntaxError {
-                kind,
-                span: pair.span,
-            });
+            let kind = SyntaxErrorKind::NumberTooLarge { text: text.to_string() };
+            self.errors.push(SyntaxError { kind, span: pair.span });
         }
         ExprKind::Float(value)
     }
@@ -54,9 +49,7 @@ impl<'s> Builder<'s> {
             match character {
                 Some(character) => value.push(character),
                 None => self.errors.push(SyntaxError {
-                    kind: SyntaxErrorKind::BadEscape {
-                        escape: escape.to_string(),
-                    },
+                    kind: SyntaxErrorKind::BadEscape { escape: escape.to_string() },
                     span: Span::new(offset, offset + length),
                 }),
             }
@@ -74,12 +67,7 @@ fn unescape(text: &str) -> (Option<char>, usize) {
         Some(b'"') => '"',
         Some(b'\\') => '\\',
         _ => {
-            let digits = text
-                .get(3..)
-                .unwrap_or_default()
-                .split('}')
-                .next()
-                .unwrap_or_default();
+            let digits = text.get(3..).unwrap_or_default().split('}').next().unwrap_or_default();
             let code = u32::from_str_radix(digits, 16).ok();
             return (code.and_then(char::from_u32), 4 + digits.len());
         }

@@ -100,18 +100,12 @@ impl<'s> Builder<'s> {
                 Token::Start { rule, pos } => {
                     let start = self.offset + pos.pos();
                     let content = Content::Parts(Vec::new());
-                    open.push(Pair {
-                        rule,
-                        span: Span::new(start, start),
-                        text: "",
-                        content,
-                    });
+                    open.push(Pair { rule, span: Span::new(start, start), text: "", content });
                 }
                 Token::End { rule, pos } => {
                     let Some(mut node) = open.pop() else { break };
                     // Behind an optional part that is absent pest counts the white space in.
-                    let is_leaf =
-                        matches!(&node.content, Content::Parts(parts) if parts.is_empty());
+                    let is_leaf = matches!(&node.content, Content::Parts(parts) if parts.is_empty());
                     if is_leaf || is_mark(rule) {
                         last_end = self.offset + pos.pos();
                     }
@@ -140,29 +134,17 @@ impl<'s> Builder<'s> {
             }
             _ => node.content,
         };
-        Ok(Pair {
-            rule,
-            span,
-            text,
-            content,
-        })
+        Ok(Pair { rule, span, text, content })
     }
 
     /// The next part, which the grammar promises.
-    pub(super) fn next(
-        &self,
-        parts: &mut Parts<'s>,
-        what: &'static str,
-    ) -> Result<Pair<'s>, SyntaxError> {
+    pub(super) fn next(&self, parts: &mut Parts<'s>, what: &'static str) -> Result<Pair<'s>, SyntaxError> {
         parts.next().ok_or_else(|| self.missing(what))
     }
 
     /// A `name` node as a name.
     pub(super) fn name(&self, node: &Pair<'s>) -> Name {
-        Name {
-            text: node.text.to_string(),
-            span: node.span,
-        }
+        Name { text: node.text.to_string(), span: node.span }
     }
 
     /// The next part as a name.
