@@ -240,9 +240,25 @@ fn virtual_indices_do_not_repeat() -> Result<(), Failed> {
         // Far out, so that every digit of the walk takes part.
         let region = [40_000.0, 3_000.0, 40_000.0 + f64::from(side), 3_000.0 + f64::from(side)];
         let request = Request { region, settings: Settings::new(), ..Request::new([side; 2]) };
-        let picture = on_cpu(&program, &tables, &request)?;
-        let picks: Vec<u32> = picture.pixels.iter().map(|p| (p[0] * 16.0).round() as u32).collect();
-        check_picks(pick, &picks, side as usize)?;
+        let picks = |request: &Request| -> Result<Vec<u32>, Failed> {
+            let picture = on_cpu(&program, &tables, request)?;
+            Ok(picture.pixels.iter().map(|p| (p[0] * 16.0).round() as u32).collect())
+        };
+        let here = picks(&request)?;
+        check_picks(pick, &here, side as usize)?;
+        // Shifts by whole digits, within the period of 65,536 cells.
+        for shift in [256.0, 4_096.0, 16_384.0, 25_000.0] {
+            for [dx, dy] in [[shift, 0.0], [0.0, shift], [shift, shift]] {
+                let [x0, y0, x1, y1] = region;
+                let moved = Request { region: [x0 + dx, y0 + dy, x1 + dx, y1 + dy], ..request.clone() };
+                let there = picks(&moved)?;
+                let same = here.iter().zip(&there).filter(|(a, b)| a == b).count();
+                let share = same as f64 / here.len() as f64;
+                if share > 0.2 {
+                    return Err(format!("{pick}: a shift of ({dx}, {dy}) agrees in {share:.2}").into());
+                }
+            }
+        }
     }
     Ok(())
 }

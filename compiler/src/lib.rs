@@ -95,11 +95,10 @@ pub fn compile(
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
     let (graph, label) = checked(library, &modules, options).map_err(fail)?;
-    let fail = |diagnostic| Failure { sources: modules.sources.clone(), diagnostics: vec![diagnostic] };
-    let graph = pass::run(graph).map_err(fail)?;
+    let graph = pass::run(graph);
     let manifest = contract::manifest(&graph, &label, options);
     let wgsl = emit::wgsl(&lower::lower(&graph, &manifest))
-        .map_err(|why| fail(limits::bug(main_place(&modules), &why)))?;
+        .map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
     Ok(Compiled { program: Program { graph, manifest, wgsl }, sources: modules.sources })
 }
 

@@ -15,8 +15,10 @@ mod fold;
 mod globals;
 mod order;
 mod plan;
+mod special;
 mod texture;
 mod types;
+mod view;
 mod wire;
 
 pub use texture::textures;

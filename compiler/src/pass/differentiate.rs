@@ -9,7 +9,6 @@
 //! inputs' changes a function needs inside. Then variants are requested from callers to callees,
 //! and made from callees to callers.
 
-use crate::diagnostic::Diagnostic;
 use crate::graph::{Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, Type, Value};
 use crate::intrinsic::{self, Derivative, Tangents};
 use rustc_hash::FxHashMap;
@@ -49,10 +48,7 @@ struct Made {
 }
 
 /// Replaces every `Level::Auto` by gradients and every inner derivative by its value.
-///
-/// # Errors
-/// None so far; what can't be differentiated would be said at its place.
-pub fn run(graph: Graph) -> Result<Graph, Diagnostic> {
+pub fn run(graph: Graph) -> Graph {
     let mut known: Vec<Known> = Vec::with_capacity(graph.functions.len());
     for function in &graph.functions {
         known.push(analyse(function, &known));
@@ -68,7 +64,7 @@ pub fn run(graph: Graph) -> Result<Graph, Diagnostic> {
             made.insert((i, variant.clone()), Made { id: FunctionId(functions.len() as u32 - 1), tangents });
         }
     }
-    Ok(Graph { functions, ..graph })
+    Graph { functions, ..graph }
 }
 
 /// Forward: what changes with what.

@@ -10,12 +10,6 @@ pub mod remove_dead;
 use crate::graph::Graph;
 
 /// Everything between checking and lowering.
-///
-/// # Errors
-/// What the passes can't do yet, at its place.
-pub fn run(graph: Graph) -> Result<Graph, crate::diagnostic::Diagnostic> {
-    let graph = inline::run(graph);
-    let graph = differentiate::run(graph)?;
-    let graph = expand::run(graph);
-    Ok(remove_dead::run(graph))
+pub fn run(graph: Graph) -> Graph {
+    remove_dead::run(expand::run(differentiate::run(inline::run(graph))))
 }
