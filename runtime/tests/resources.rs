@@ -151,9 +151,9 @@ fn pattern_mistakes_are_told() {
     write_picture(&folder.path().join("b.png"), [4, 4], &[0; 16]);
     assert_eq!(codes(folder.path(), vec![patterns(&["a.png"], [2, 2])]), ["E0507"]);
     assert_eq!(codes(folder.path(), vec![patterns(&["a.png", "b.png"], [1, 1])]), ["E0508"]);
-    assert_eq!(codes(folder.path(), vec![patterns(&["b.png"], [257, 1])]), ["E0509"]);
-    assert_eq!(codes(folder.path(), vec![patterns(&["b.png"], [0, 4])]), ["E0510"]);
-    assert_eq!(codes(folder.path(), vec![patterns(&[], [1, 1])]), ["E0510"]);
+    assert_eq!(codes(folder.path(), vec![patterns(&["b.png"], [257, 1])]), ["E0554"]);
+    assert_eq!(codes(folder.path(), vec![patterns(&["b.png"], [0, 4])]), ["E0551"]);
+    assert_eq!(codes(folder.path(), vec![patterns(&[], [1, 1])]), ["E0551"]);
     let errors =
         load_recipes(folder.path(), vec![patterns(&["a.png"], [2, 2])]).expect_err("the grid is uneven");
     assert!(errors[0].message.contains("2×2") && errors[0].message.contains("5×4"), "{}", errors[0].message);
@@ -173,7 +173,7 @@ fn all_errors_of_all_resources_come_at_once_and_in_order() {
     ];
     let errors = load_recipes(folder.path(), recipes).expect_err("four are broken");
     let told: Vec<(u32, &str)> = errors.iter().map(|error| (error.place.file, error.code)).collect();
-    assert_eq!(told, [(0, "E0501"), (2, "E0501"), (2, "E0501"), (3, "E0502"), (4, "E0510")]);
+    assert_eq!(told, [(0, "E0501"), (2, "E0501"), (2, "E0501"), (3, "E0502"), (4, "E0551")]);
     assert_eq!(errors[0].help.as_deref(), Some("is `grass.png` meant?"));
 }
 
@@ -200,7 +200,13 @@ fn crc(bytes: &[u8]) -> u32 {
 #[test]
 fn lying_headers_are_refused() {
     let folder = folder();
-    for (size, code) in [([60_000, 60_000], "E0506"), ([16_385, 1], "E0506"), ([16_384, 16], "E0505")] {
+    let claims = [
+        ([60_000, 60_000], "E0506"),
+        ([16_385, 1], "E0506"),
+        ([16_384, 16], "E0511"),
+        ([8_192, 16], "E0505"),
+    ];
+    for (size, code) in claims {
         fs::write(folder.path().join("lie.png"), lying_png(size)).expect("it is written");
         assert_eq!(codes(folder.path(), vec![image("lie.png", Encoding::Srgb)]), [code], "{size:?}");
     }
@@ -266,7 +272,7 @@ fn permutations_are_permutations_and_never_change() {
     }
     let (_, bytes) = made(folder.path(), Recipe::Permutation { size: 256, seed: 1 });
     assert_eq!(integers(&bytes)[..8], [130, 151, 169, 18, 196, 204, 177, 222]);
-    assert_eq!(codes(folder.path(), vec![Recipe::Permutation { size: 4097, seed: 0 }]), ["E0510"]);
+    assert_eq!(codes(folder.path(), vec![Recipe::Permutation { size: 4097, seed: 0 }]), ["E0551"]);
 }
 
 #[test]
@@ -294,7 +300,7 @@ fn rows_of_numbers_are_checked() {
     assert_eq!((table.width, table.height), (3, 2));
     assert_eq!(integers(&bytes), [0, 1, 0, 1, 0, 1]);
     for wrong in [rows(&[]), rows(&[&[]]), rows(&[&[0, 1], &[0]]), rows(&[&[0, 2]]), rows(&[&[-1]])] {
-        assert_eq!(codes(folder.path(), vec![wrong]), ["E0510"]);
+        assert_eq!(codes(folder.path(), vec![wrong]), ["E0551"]);
     }
 }
 

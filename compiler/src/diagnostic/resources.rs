@@ -80,7 +80,7 @@ pub fn sizes_differ(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2
 /// More layers than every GPU has.
 pub fn too_many_layers(place: Place, layers: u64, limit: u32) -> Diagnostic {
     Diagnostic::new(
-        "E0509",
+        "E0554",
         place,
         format!("{layers} patterns are too many"),
         format!("a texture has at most {limit} layers"),
@@ -90,7 +90,7 @@ pub fn too_many_layers(place: Place, layers: u64, limit: u32) -> Diagnostic {
 
 /// Sizes or numbers in the constructor's arguments that make no table.
 pub fn no_table(place: Place, message: impl Into<String>, reason: impl Into<String>) -> Diagnostic {
-    Diagnostic::new("E0510", place, message, reason)
+    Diagnostic::new("E0551", place, message, reason)
 }
 
 /// A texture with a side longer than every GPU has.

@@ -1,6 +1,6 @@
 //! Intrinsics: everything the language does that is not written in the language.
 //!
-//! One row of [`table`] says all about one intrinsic: its name and signature (in the language's own
+//! One row of `table` says all about one intrinsic: its name and signature (in the language's own
 //! notation), its documentation, its value (which defines it, on every machine, bit for bit), its
 //! derivative and its form in the shader. Nothing else lists intrinsics, so a new one is a new row.
 //!

@@ -1,7 +1,7 @@
 //! Screen-space derivatives by forward differentiation of the graph, on demand.
 //!
 //! A sample needs the gradient of its coordinate; a function is made anew for every combination of
-//! inputs that change across the screen and outputs whose change is wanted (a [`Variant`]). Only
+//! inputs that change across the screen and outputs whose change is wanted (a `Variant`). Only
 //! values that reach a sample or a `dx`/`dy` get a tangent. The rules are in the intrinsic table;
 //! what comes out of a sample or a fetch, and every integer, counts as constant.
 //!

@@ -55,13 +55,71 @@ impl Decoded {
     }
 }
 
-/// Reads and decodes a picture of the project.
+/// A picture file whose header was read: what it says of itself, before a texel is allocated.
+pub struct PictureFile<'a> {
+    path: &'a str,
+    place: Place,
+    bytes: Vec<u8>,
+    format: ImageFormat,
+    /// Texels across and down.
+    pub size: [u32; 2],
+    /// Whether a sample has 16 bits rather than 8.
+    pub is_deep: bool,
+}
+
+/// Reads a picture file of the project, and its header.
 ///
 /// # Errors
-/// The file can't be read, is no whole picture, or is too large.
-pub fn open(project: &Project, path: &str, place: Place) -> Result<Decoded, Vec<Diagnostic>> {
+/// The file can't be read, is no picture, or claims to be too large.
+pub fn open<'a>(project: &Project, path: &'a str, place: Place) -> Result<PictureFile<'a>, Vec<Diagnostic>> {
     let bytes = project.read(path).map_err(|error| vec![unread(place, path, error.problem)])?;
-    decode(&bytes, path, place)
+    let refuse = |reason: &str| vec![resources::not_a_picture(place, path, reason)];
+    let format = format(&bytes, path).ok_or_else(|| refuse("it is no PNG, JPEG or TGA file"))?;
+    if format == ImageFormat::Jpeg && !is_whole_jpeg(&bytes) {
+        return Err(refuse("the file ends too early"));
+    }
+    let mut file = PictureFile { path, place, bytes, format, size: [0, 0], is_deep: false };
+    let decoder = file.decoder()?;
+    let (width, height) = decoder.dimensions();
+    if width > MAX_SIDE || height > MAX_SIDE || decoder.total_bytes() > MAX_BYTES {
+        return Err(vec![resources::picture_too_large(place, path, [width, height], MAX_SIDE)]);
+    }
+    if width == 0 || height == 0 {
+        return Err(refuse("it has no texels"));
+    }
+    let (_, is_deep) =
+        layout(decoder.color_type()).ok_or_else(|| refuse("its samples have neither 8 nor 16 bits"))?;
+    drop(decoder);
+    file.size = [width, height];
+    file.is_deep = is_deep;
+    Ok(file)
+}
+
+impl PictureFile<'_> {
+    fn refuse(&self, reason: &str) -> Vec<Diagnostic> {
+        vec![resources::not_a_picture(self.place, self.path, reason)]
+    }
+
+    fn decoder(&self) -> Result<impl ImageDecoder + '_, Vec<Diagnostic>> {
+        let mut reader = ImageReader::with_format(Cursor::new(self.bytes.as_slice()), self.format);
+        reader.limits(limits(None));
+        reader.into_decoder().map_err(|error| self.refuse(&error.to_string()))
+    }
+
+    /// The texels.
+    ///
+    /// # Errors
+    /// The file is no whole picture.
+    pub fn decode(&self) -> Result<Decoded, Vec<Diagnostic>> {
+        let mut decoder = self.decoder()?;
+        let refused = |error: image::ImageError| self.refuse(&error.to_string());
+        decoder.set_limits(limits(Some(MAX_SIDE))).map_err(refused)?;
+        let (channels, deep) = layout(decoder.color_type())
+            .ok_or_else(|| self.refuse("its samples have neither 8 nor 16 bits"))?;
+        let mut buffer = vec![0; decoder.total_bytes() as usize];
+        decoder.read_image(&mut buffer).map_err(refused)?;
+        Ok(Decoded { size: self.size, channels, samples: samples(buffer, deep) })
+    }
 }
 
 /// A file's problem in the compiler's words.
@@ -73,32 +131,6 @@ fn unread(place: Place, path: &str, problem: Problem) -> Diagnostic {
         Problem::Unreadable { reason } => resources::unreadable_file(place, path, &reason),
         Problem::TooLarge { limit } => resources::file_too_large(place, path, limit),
     }
-}
-
-/// Decodes the bytes of a picture; `path` names it in errors, and tells a TGA by its ending.
-fn decode(bytes: &[u8], path: &str, place: Place) -> Result<Decoded, Vec<Diagnostic>> {
-    let refuse = |reason: &str| vec![resources::not_a_picture(place, path, reason)];
-    let format = format(bytes, path).ok_or_else(|| refuse("it is no PNG, JPEG or TGA file"))?;
-    if format == ImageFormat::Jpeg && !is_whole_jpeg(bytes) {
-        return Err(refuse("the file ends too early"));
-    }
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(limits(None));
-    let mut decoder = reader.into_decoder().map_err(|error| refuse(&error.to_string()))?;
-    let (width, height) = decoder.dimensions();
-    let too_large = || vec![resources::picture_too_large(place, path, [width, height], MAX_SIDE)];
-    if width > MAX_SIDE || height > MAX_SIDE || decoder.total_bytes() > MAX_BYTES {
-        return Err(too_large());
-    }
-    if width == 0 || height == 0 {
-        return Err(refuse("it has no texels"));
-    }
-    decoder.set_limits(limits(Some(MAX_SIDE))).map_err(|_| too_large())?;
-    let (channels, deep) =
-        layout(decoder.color_type()).ok_or_else(|| refuse("its samples have neither 8 nor 16 bits"))?;
-    let mut buffer = vec![0; decoder.total_bytes() as usize];
-    decoder.read_image(&mut buffer).map_err(|error| refuse(&error.to_string()))?;
-    Ok(Decoded { size: [width, height], channels, samples: samples(buffer, deep) })
 }
 
 /// By the first bytes; a TGA has no mark, so by its name.

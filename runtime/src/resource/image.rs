@@ -17,9 +17,10 @@ pub fn make(
     path: &str,
     encoding: Encoding,
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
-    let picture = decode::open(project, path, place)?;
-    let format = encoding::format(encoding, picture.is_deep());
-    table::check(place, path, format, picture.size, 1)?;
+    let file = decode::open(project, path, place)?;
+    let format = encoding::format(encoding, file.is_deep);
+    table::check(place, path, format, file.size, 1)?;
+    let picture = file.decode()?;
     let reader = Reader::new(&picture, encoding);
     Ok(vec![pyramid::build("pixels", format, picture.size, 1, |_, x, y| reader.texel(x, y))])
 }

@@ -28,11 +28,12 @@ pub fn make(
 }
 
 fn of_picture(project: &Project, place: Place, path: &str, levels: u32) -> Result<Made, Vec<Diagnostic>> {
-    let picture = decode::open(project, path, place)?;
-    let size = picture.size;
+    let file = decode::open(project, path, place)?;
+    let size = file.size;
     if size.iter().any(|side| *side > MAX_SIDE) {
         return Err(vec![resources::texture_too_large(place, path, size, MAX_SIDE)]);
     }
+    let picture = file.decode()?;
     let codes = u64::from(picture.white()) + 1;
     let mut numbers = Vec::with_capacity(size[0] as usize * size[1] as usize);
     for y in 0..size[1] {

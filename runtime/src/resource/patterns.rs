@@ -5,7 +5,7 @@
 //! Lefebvre & Neyret 2003, §5.2, ask hardware for. They come from the cells of one picture, row by
 //! row, or from a list of files.
 
-use super::decode::{self, Decoded};
+use super::decode::{self, PictureFile};
 use super::encoding::{self, Reader};
 use super::pyramid;
 use super::table::{self, Made};
@@ -33,10 +33,12 @@ pub fn make(
     let Some(first) = paths.first().filter(|_| count > 0) else {
         return Err(vec![resources::no_table(place, "there are no patterns", "at least one is needed")]);
     };
-    let pictures = open_all(project, place, paths)?;
-    let cell = cell(place, paths, &pictures, grid)?;
-    let format = encoding::format(encoding, pictures.iter().any(Decoded::is_deep));
+    let files = all(paths, |path| decode::open(project, path, place))?;
+    let cell = cell(place, paths, &files, grid)?;
+    let format = encoding::format(encoding, files.iter().any(|file| file.is_deep));
+    // Before anything is decoded: many files could fill the memory together.
     table::check(place, first, format, cell, count as u32)?;
+    let pictures = all(&files, PictureFile::decode)?;
     let readers: Vec<Reader<'_>> = pictures.iter().map(|picture| Reader::new(picture, encoding)).collect();
     let cells = grid[0] * grid[1];
     Ok(vec![pyramid::build("layers", format, cell, count as u32, |layer, x, y| {
@@ -46,27 +48,31 @@ pub fn make(
     })])
 }
 
-fn open_all(project: &Project, place: Place, paths: &[String]) -> Result<Vec<Decoded>, Vec<Diagnostic>> {
-    let opened: Vec<_> = paths.par_iter().map(|path| decode::open(project, path, place)).collect();
-    let (mut pictures, mut errors) = (Vec::new(), Vec::new());
-    for result in opened {
+/// The results for all items, in parallel; or all errors, in their order.
+fn all<'a, T: Sync, R: Send>(
+    items: &'a [T],
+    f: impl Fn(&'a T) -> Result<R, Vec<Diagnostic>> + Send + Sync,
+) -> Result<Vec<R>, Vec<Diagnostic>> {
+    let results: Vec<_> = items.par_iter().map(f).collect();
+    let (mut done, mut errors) = (Vec::new(), Vec::new());
+    for result in results {
         match result {
-            Ok(picture) => pictures.push(picture),
+            Ok(one) => done.push(one),
             Err(found) => errors.extend(found),
         }
     }
-    if errors.is_empty() { Ok(pictures) } else { Err(errors) }
+    if errors.is_empty() { Ok(done) } else { Err(errors) }
 }
 
 /// The size of one pattern in texels.
 fn cell(
     place: Place,
     paths: &[String],
-    pictures: &[Decoded],
+    files: &[PictureFile<'_>],
     grid: [u32; 2],
 ) -> Result<[u32; 2], Vec<Diagnostic>> {
     let named: Vec<(&str, [u32; 2])> =
-        paths.iter().map(String::as_str).zip(pictures.iter().map(|picture| picture.size)).collect();
+        paths.iter().map(String::as_str).zip(files.iter().map(|file| file.size)).collect();
     let Some(&first) = named.first() else {
         return Ok([1, 1]);
     };
