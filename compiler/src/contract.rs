@@ -7,7 +7,8 @@ use crate::manifest::{
     self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source,
     Texture, Type, Uniform, Value,
 };
-use crate::{Options, naming};
+use crate::naming::{self, Scope};
+use crate::Options;
 use std::collections::BTreeSet;
 
 /// Inputs that are the same for a whole draw: the complete form reads them from the uniform block.
@@ -47,19 +48,21 @@ pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
     let params = params(graph, &reads, &mut block);
     let inputs = inputs(entry, options.form, &mut block);
     let mut next = options.first_binding;
+    // Global names are public: they are chosen here, apart from each other, and lowering keeps away.
+    let mut scope = Scope::default();
+    let entry_point = scope.name(&match options.form {
+        Form::Complete => format!("{name}_fragment"),
+        Form::Library => name.clone(),
+    });
     let uniform = (block.size > 0).then(|| {
         next += 1;
         Uniform {
-            name: format!("{name}_params"),
+            name: scope.name(&format!("{name}_params")),
             group: options.group,
             binding: options.first_binding,
             size: block.size.next_multiple_of(16),
         }
     });
-    let entry_point = match options.form {
-        Form::Complete => format!("{name}_fragment"),
-        Form::Library => name.clone(),
-    };
     let derivative = |op: &Operation| matches!(op, Operation::Derivative(..));
     Manifest {
         version: manifest::VERSION,
@@ -71,7 +74,7 @@ pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
         outputs: outputs(entry),
         params,
         uniform,
-        resources: resources(graph, &reads, &name, options.group, next),
+        resources: resources(graph, &reads, &name, &mut scope, (options.group, next)),
         passes: vec![Pass {
             name: entry.name.clone(),
             shader: format!("{}.wgsl", entry.name),
@@ -150,7 +153,13 @@ fn outputs(entry: &graph::Function) -> Vec<Output> {
 
 /// The resources, all of them, so that indices agree with the graph's; those without textures are
 /// not read and need not be loaded.
-fn resources(graph: &Graph, reads: &Reads, prefix: &str, group: u32, first: u32) -> Vec<Resource> {
+fn resources(
+    graph: &Graph,
+    reads: &Reads,
+    prefix: &str,
+    scope: &mut Scope,
+    (group, first): (u32, u32),
+) -> Vec<Resource> {
     let mut binding = first;
     let mut next = || {
         binding += 1;
@@ -172,7 +181,7 @@ fn resources(graph: &Graph, reads: &Reads, prefix: &str, group: u32, first: u32)
         let name = format!("{prefix}_{}", naming::identifier(&resource.name));
         all[view.resource as usize].textures.push(Texture {
             field: view.field.to_owned(),
-            name: format!("{name}_{}", view.field),
+            name: scope.name(&format!("{name}_{}", view.field)),
             group,
             binding: next(),
             view: match view.view.dimension {
@@ -185,7 +194,7 @@ fn resources(graph: &Graph, reads: &Reads, prefix: &str, group: u32, first: u32)
                 graph::Texel::Integer => SampleKind::Int,
             },
             sampler: resource.sampler.map(|state| Sampler {
-                name: format!("{name}_sampler"),
+                name: scope.name(&format!("{name}_sampler")),
                 group,
                 binding: next(),
                 wrap: state.wrap,

@@ -61,6 +61,11 @@ impl Scope {
         Scope { module: module.to_owned(), ..Scope::default() }
     }
 
+    /// Takes a name that was chosen elsewhere.
+    pub fn take(&mut self, name: &str) {
+        self.taken.insert(name.to_owned());
+    }
+
     /// The wished name, or one like it that is free here.
     pub fn name(&mut self, wish: &str) -> String {
         let mut base = identifier(wish);

@@ -81,8 +81,14 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
         helpers: BTreeMap::new(),
         results: Vec::new(),
     };
-    // The wrapper's name is the one hosts call, so it is taken first.
-    let entry = l.scope.name(&manifest.passes.last().map_or(String::new(), |pass| pass.entry_point.clone()));
+    // The manifest's names are the ones hosts know.
+    let entry = manifest.passes.last().map_or(String::new(), |pass| pass.entry_point.clone());
+    l.scope.take(&entry);
+    manifest.uniform.iter().for_each(|uniform| l.scope.take(&uniform.name));
+    for texture in manifest.textures() {
+        l.scope.take(&texture.name);
+        texture.sampler.iter().for_each(|sampler| l.scope.take(&sampler.name));
+    }
     for i in 0..graph.functions.len() {
         l.function(i);
     }
