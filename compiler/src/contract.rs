@@ -2,13 +2,13 @@
 //!
 //! Lowering reads the names and places from here, so the two can't disagree.
 
+use crate::Options;
 use crate::graph::{self, Constant, Graph, Operation, ParamId, Scalar, ViewDimension, ViewId};
 use crate::manifest::{
     self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source,
     Texture, Type, Uniform, Value,
 };
 use crate::naming::{self, Scope};
-use crate::Options;
 use std::collections::BTreeSet;
 
 /// Inputs that are the same for a whole draw: the complete form reads them from the uniform block.
