@@ -4,15 +4,13 @@
 
 use crate::Options;
 use crate::graph::{self, Constant, Graph, Operation, ParamId, Scalar, ViewDimension, ViewId};
+use crate::input::is_per_draw;
 use crate::manifest::{
     self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source,
     Texture, Type, Uniform, Value,
 };
 use crate::naming::{self, Scope};
 use std::collections::BTreeSet;
-
-/// Inputs that are the same for a whole draw: the complete form reads them from the uniform block.
-const PER_DRAW: &[&str] = &["time", "base", "instance"];
 
 /// The params and views that a program reads, in order.
 pub struct Reads {
@@ -125,9 +123,7 @@ fn inputs(entry: &graph::Function, form: Form, block: &mut Block) -> Vec<Input> 
     let mut location = 0;
     let mut source = |slot: &graph::Slot| match form {
         Form::Library => Source::Member,
-        Form::Complete if PER_DRAW.contains(&slot.name.as_str()) => {
-            Source::Uniform(block.add(slot.ty.width()))
-        }
+        Form::Complete if is_per_draw(&slot.name) => Source::Uniform(block.add(slot.ty.width())),
         Form::Complete => {
             location += 1;
             Source::Varying(location - 1)

@@ -14,6 +14,7 @@ mod contract;
 pub mod diagnostic;
 pub mod emit;
 pub mod graph;
+mod input;
 pub mod intrinsic;
 pub mod library;
 pub mod lower;

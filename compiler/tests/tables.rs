@@ -185,3 +185,37 @@ fn derivatives_are_slopes() {
         }
     }
 }
+
+/// An argument of a declared type that no pass can fold.
+fn open_argument(ty: &Type, width: u8) -> String {
+    let (scalar, width) = shape(ty, width);
+    let float = ["uv.x", "uv", "tangent.xyz", "tangent"][usize::from(width) - 1];
+    match scalar {
+        Scalar::Float => float.to_owned(),
+        Scalar::Int => format!("ifloor({float} * 8.0)"),
+        Scalar::Bool => "uv.x < 0.5".to_owned(),
+    }
+}
+
+/// Every row that has a name reaches the shader, at every width, and naga accepts it.
+#[test]
+fn every_named_row_is_lowered() {
+    let library = texgraph_compiler::Library::standard().expect("the library parses");
+    for (intrinsic, signature) in rows() {
+        let name = intrinsic.row().name;
+        if !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+            continue;
+        }
+        for width in widths(&signature) {
+            let arguments: Vec<String> =
+                signature.inputs.iter().map(|input| open_argument(&input.ty, width)).collect();
+            let call = format!("{name}({})", arguments.join(", "));
+            let text =
+                format!("texture t(uv: vec2, tangent: vec4) -> (height: float) {{ height = {call}.x }}");
+            let files: std::collections::HashMap<String, String> = [("t.tex".to_owned(), text)].into();
+            let compiled = texgraph_compiler::compile(&library, "t.tex", &files, &Default::default());
+            let errors = compiled.err().map(|failure| failure.diagnostics);
+            assert_eq!(errors, None, "{call}");
+        }
+    }
+}

@@ -6,22 +6,9 @@ use super::wire::{ArgumentKey, Key, Wire};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, limits, names, types as errors, unsupported};
 use crate::graph::{Scalar, Type};
+use crate::input::INPUTS;
 use crate::module::Module;
 use texgraph_grammar::syntax::{File, ItemKind, Node};
-
-/// The inputs that hosts know, with their types.
-const INPUTS: &[(&str, &[&str])] = &[
-    ("uv", &["vec2"]),
-    ("position", &["vec3"]),
-    ("normal", &["vec3"]),
-    ("tangent", &["vec4"]),
-    ("view", &["vec3"]),
-    ("time", &["float"]),
-    ("base", &["ivec2", "ivec3"]),
-    ("uv2", &["vec2"]),
-    ("vertex_color", &["color", "vec4"]),
-    ("instance", &["int"]),
-];
 
 /// The outputs that hosts know, with their types.
 const OUTPUTS: &[(&str, &[&str])] = &[
@@ -144,10 +131,10 @@ impl<'a> Checker<'a> {
             return;
         }
         for input in &node.inputs {
-            match INPUTS.iter().find(|(name, _)| *name == input.name.text) {
+            match INPUTS.iter().find(|known| known.name == input.name.text) {
                 // Whatever input was meant is missing.
-                None => INPUTS.iter().for_each(|(name, _)| f.unknown.insert(name)),
-                Some((_, wanted)) if !is_one_of(&input.ty, wanted) => {
+                None => INPUTS.iter().for_each(|known| f.unknown.insert(known.name)),
+                Some(known) if !is_one_of(&input.ty, known.types) => {
                     f.scopes[0].insert(&input.name.text, Wire::Unknown);
                 }
                 Some(_) => {}
@@ -197,15 +184,15 @@ impl<'a> Checker<'a> {
         }
         for input in &node.inputs {
             let place = Place { file, span: input.name.span };
-            match INPUTS.iter().find(|(name, _)| *name == input.name.text) {
+            match INPUTS.iter().find(|known| known.name == input.name.text) {
                 None => {
-                    let near = names::nearest(&input.name.text, INPUTS.iter().map(|(name, _)| *name));
-                    let known =
-                        INPUTS.iter().map(|(name, _)| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                    let near = names::nearest(&input.name.text, INPUTS.iter().map(|known| known.name));
+                    let known: Vec<String> = INPUTS.iter().map(|known| format!("`{}`", known.name)).collect();
+                    let known = known.join(", ");
                     let error = errors::unknown_texture_input(place, &input.name.text, &known, near);
                     self.diagnostics.push(error);
                 }
-                Some((name, types)) => self.fixed_type(name, types, &input.ty, file),
+                Some(known) => self.fixed_type(known.name, known.types, &input.ty, file),
             }
             if let Some(default) = &input.default {
                 let place = Place { file, span: default.span };

@@ -306,7 +306,8 @@ impl Lowering<'_> {
             "|" if single => BinaryOperator::LogicalOr,
             "&" => BinaryOperator::And,
             "|" => BinaryOperator::InclusiveOr,
-            _ => BinaryOperator::ExclusiveOr,
+            "^" => BinaryOperator::ExclusiveOr,
+            _ => unreachable!("a row of the intrinsic table names an operator that is not lowered: {symbol}"),
         };
         body.binary(op, operands[0], operands[1])
     }

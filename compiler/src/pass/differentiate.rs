@@ -10,6 +10,7 @@
 //! and made from callees to callers.
 
 use crate::graph::{Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, Type, Value};
+use crate::input::is_per_draw;
 use crate::intrinsic::{self, Derivative, Tangents};
 use rustc_hash::FxHashMap;
 
@@ -19,9 +20,6 @@ type Inputs = u128;
 fn bit(input: usize) -> Inputs {
     1 << input.min(127)
 }
-
-/// Texture inputs that do not change from pixel to pixel.
-const PER_DRAW: &[&str] = &["time", "base", "instance"];
 
 /// What is known of a function before variants are made.
 struct Known {
@@ -136,7 +134,7 @@ fn request(graph: &Graph, known: &[Known]) -> Vec<Vec<Variant>> {
 }
 
 fn changes(ty: Type, name: &str) -> bool {
-    ty.is_float() && !PER_DRAW.contains(&name)
+    ty.is_float() && !is_per_draw(name)
 }
 
 /// Which values of a variant need a tangent.

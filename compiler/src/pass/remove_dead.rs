@@ -43,8 +43,7 @@ fn wanted_outputs(graph: &Graph) -> Vec<Vec<bool>> {
     for i in (0..graph.functions.len()).rev() {
         let function = &graph.functions[i];
         let live = live_values(function, &wanted[i], |_, _| true);
-        for (value, operation) in function.iter().filter(|(v, _)| live[v.0 as usize]) {
-            debug_assert!(live[value.0 as usize]);
+        for (_, operation) in function.iter().filter(|(v, _)| live[v.0 as usize]) {
             if let Operation::Output(call, output) = operation
                 && let Operation::Call(callee, _) = function.operation(*call)
             {
