@@ -189,7 +189,8 @@ impl<'a> Scene<'a> {
             let _ = sender.send(result);
         });
         self.gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(&error))?;
-        let mapped = receiver.try_recv().map_err(|_| failed(&"the picture was not read back"))?;
+        // A poll of another thread may be calling back still.
+        let mapped = receiver.recv().map_err(|_| failed(&"the picture was not read back"))?;
         mapped.map_err(|error| failed(&error))?;
         let bytes = canvas.read_back.get_mapped_range(..).map_err(|error| failed(&error))?;
         copy_rows(&bytes, tile, picture);
