@@ -73,8 +73,10 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
     let tables = program.load(&mut compiled)?;
     let mut manifest = compiled.program.manifest;
     let mut files = name_tables(&mut manifest, &tables);
+    for (pass, described) in compiled.program.passes.into_iter().zip(&manifest.passes) {
+        files.push((described.shader.clone(), pass.wgsl.into_bytes().into()));
+    }
     let name = &manifest.texture;
-    files.push((format!("{name}.wgsl"), compiled.program.wgsl.into_bytes().into()));
     files.push(match args.manifest {
         ManifestFormat::Ron => (format!("{name}.ron"), manifest.to_ron().into_bytes().into()),
         ManifestFormat::Json => (format!("{name}.json"), manifest.to_json().into_bytes().into()),

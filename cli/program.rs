@@ -66,8 +66,7 @@ impl<'a> Program<'a> {
     /// # Errors
     /// All that is wrong with any of the files.
     pub fn load(&self, compiled: &mut Compiled) -> Result<Tables, Failure> {
-        let program = &mut compiled.program;
-        resource::load(&program.graph, &mut program.manifest, &self.project)
+        resource::load(&mut compiled.program, &self.project)
             .map_err(|diagnostics| Failure { sources: compiled.sources.clone(), diagnostics })
     }
 }

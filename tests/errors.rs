@@ -109,7 +109,7 @@ fn a_file_of_more_than_half_a_gibibyte() {
     let options = texgraph_compiler::Options::default();
     let compiled = texgraph_compiler::compile(&library, project.main(), &project, &options);
     let mut program = compiled.expect("it compiles").program;
-    let loaded = texgraph_runtime::resource::load(&program.graph, &mut program.manifest, &project);
+    let loaded = texgraph_runtime::resource::load(&mut program, &project);
     let Err(errors) = loaded else { panic!("the file is too large") };
     assert_eq!(errors.iter().map(|d| d.code).collect::<Vec<_>>(), [MADE]);
 }

@@ -48,7 +48,7 @@ fn wgsl_and_manifest_are_as_recorded() {
             for (form, suffix) in [(Form::Complete, "complete"), (Form::Library, "library")] {
                 let options = Options { form, ..Options::default() };
                 let program = compiled(&library, &file, &options).program;
-                insta::assert_snapshot!(format!("{name}.{suffix}.wgsl"), program.wgsl);
+                insta::assert_snapshot!(format!("{name}.{suffix}.wgsl"), program.texture().wgsl);
                 if form == Form::Complete {
                     insta::assert_snapshot!(format!("{name}.ron"), program.manifest.to_ron());
                 }
@@ -63,7 +63,7 @@ fn every_shader_reads_back_and_samples_explicitly() {
     for file in files() {
         for form in [Form::Complete, Form::Library] {
             let options = Options { form, group: 2, first_binding: 100, ..Options::default() };
-            let wgsl = compiled(&library, &file, &options).program.wgsl;
+            let wgsl = compiled(&library, &file, &options).program.texture().wgsl.clone();
             assert!(!wgsl.contains("textureSample("), "{}: an implicit level", file.display());
             let module = naga::front::wgsl::parse_str(&wgsl)
                 .unwrap_or_else(|error| panic!("{}: {}", file.display(), error.emit_to_string(&wgsl)));
@@ -87,7 +87,7 @@ fn the_same_text_gives_the_same_bytes() {
             });
             other.join().expect("the thread ends well")
         });
-        assert_eq!(first.wgsl, again.wgsl);
+        assert_eq!(first.texture().wgsl, again.texture().wgsl);
         assert_eq!(first.manifest, again.manifest);
     }
 }
@@ -98,7 +98,12 @@ fn an_expression_and_its_parts_named_differently_give_the_same_shader() {
     let shader = |text: &str| {
         let files = [("t.tex".to_owned(), text.to_owned())].into();
         let files: std::collections::HashMap<String, String> = files;
-        compile(&library, "t.tex", &files, &Options::default()).expect("compiles").program.graph
+        compile(&library, "t.tex", &files, &Options::default())
+            .expect("compiles")
+            .program
+            .texture()
+            .graph
+            .clone()
     };
     let one = shader("texture t(uv: vec2) -> (height: float) { height = sin(uv.x * 3.0) + sin(uv.x * 3.0) }");
     let two = shader(

@@ -72,8 +72,8 @@ fn loaded(file: &Path, output: Option<&str>) -> Result<(Program, Tables), Failed
     let compiled = compile(&library, project.main(), &project, &Options { outputs, ..Options::default() });
     let compiled = compiled.map_err(|f| render::human(&f.sources, &f.diagnostics))?;
     let mut program = compiled.program;
-    let tables = load(&program.graph, &mut program.manifest, &project)
-        .map_err(|diagnostics| render::human(&compiled.sources, &diagnostics))?;
+    let tables =
+        load(&mut program, &project).map_err(|diagnostics| render::human(&compiled.sources, &diagnostics))?;
     Ok((program, tables))
 }
 

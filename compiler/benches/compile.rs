@@ -21,7 +21,7 @@ fn benches(c: &mut Criterion) {
     let files: HashMap<String, String> = [("tiling.tex".to_owned(), TILING.to_owned())].into();
     let library = Library::standard().expect("the library parses");
     let program = tiling(&library, &files).program;
-    let module = lower(&program.graph, &program.manifest).module;
+    let module = lower(&program.texture().graph, &program.manifest).module;
     c.bench_function("library, once", |b| b.iter(|| black_box(Library::standard())));
     c.bench_function("tiling.tex, text to WGSL", |b| b.iter(|| black_box(tiling(&library, &files))));
     c.bench_function("tiling.tex, the floor: naga validates and writes", |b| {

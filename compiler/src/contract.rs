@@ -75,6 +75,14 @@ pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
         resources: resources(graph, &reads, &name, &mut scope, (options.group, next)),
         passes: vec![Pass {
             name: entry.name.clone(),
+            bake: None,
+            reads: reads
+                .views
+                .iter()
+                .map(|id| &graph.views[id.0 as usize])
+                .map(|view| (view.resource, view.field.to_owned()))
+                .collect(),
+            params: reads.params.iter().map(|id| graph.params[id.0 as usize].name.clone()).collect(),
             shader: format!("{}.wgsl", entry.name),
             entry_point,
             gradients: if entry.values.iter().any(derivative) { Gradients::Derive } else { Gradients::None },

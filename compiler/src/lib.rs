@@ -54,15 +54,33 @@ impl Default for Options {
     }
 }
 
-/// A compiled texture.
+/// A compiled texture: bakes, each after those it reads, then the texture itself.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// What it computes, after all passes; the CPU renderer evaluates this.
-    pub graph: Graph,
-    /// What a host must allocate and set.
+    /// At least one; as many as the manifest's, in the same order. The last is the texture.
+    pub passes: Vec<Pass>,
+    /// What a host must allocate, set and draw.
     pub manifest: Manifest,
+}
+
+/// One shader of a program.
+#[derive(Clone, Debug)]
+pub struct Pass {
+    /// What it computes, after all passes over the graph; the CPU renderer evaluates this. The
+    /// params, resources and views are those of the whole program.
+    pub graph: Graph,
     /// The shader.
     pub wgsl: String,
+}
+
+impl Program {
+    /// The texture itself: the last pass.
+    ///
+    /// # Panics
+    /// The program was put together without a pass.
+    pub fn texture(&self) -> &Pass {
+        self.passes.last().unwrap_or_else(|| panic!("a program has a pass"))
+    }
 }
 
 /// What is wrong with a program, and the texts to show it in.
@@ -100,7 +118,8 @@ pub fn compile(
     let manifest = contract::manifest(&graph, &label, options);
     let wgsl = emit::wgsl(&lower::lower(&graph, &manifest))
         .map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
-    Ok(Compiled { program: Program { graph, manifest, wgsl }, sources: modules.sources })
+    let passes = vec![Pass { graph, wgsl }];
+    Ok(Compiled { program: Program { passes, manifest }, sources: modules.sources })
 }
 
 /// Checks a whole file: every texture, every node, and what it imports. The texts are returned in

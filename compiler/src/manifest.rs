@@ -50,8 +50,17 @@ pub enum Form {
 /// One shader to run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
-    /// The texture's (later: the bake's) name.
+    /// The texture's name, or the baked resource's.
     pub name: String,
+    /// Of a bake: which resource it fills (an index into [`Manifest::resources`]). A host draws it
+    /// into level 0 of that resource's only texture, `uv` (at `@location(0)`) running from 0 to 1
+    /// across it, then averages each further level from the one before; once at the start, and
+    /// again whenever one of `params` changes. None for the texture itself, the last pass.
+    pub bake: Option<u32>,
+    /// What it samples or fetches: resource (index) and field. Nothing else has to be bound.
+    pub reads: Vec<(u32, String)>,
+    /// The params it reads, by name.
+    pub params: Vec<String>,
     /// The file with its WGSL, beside the manifest.
     pub shader: String,
     /// `fn NAME(in: NAMEInputs) -> NAMEOutputs` in the library form, the fragment entry point in
@@ -222,6 +231,14 @@ pub enum Recipe {
         /// M: a picture's grey range is cut into M equal steps, numbered from 0 (black); numbers
         /// given as a list must be below it.
         levels: u32,
+    },
+    /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
+    /// compiling.
+    Bake {
+        /// Texels across and down.
+        size: [u32; 2],
+        /// Its texels' format.
+        format: Format,
     },
 }
 

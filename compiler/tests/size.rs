@@ -50,7 +50,7 @@ fn fifty_thousand_lets_in_reverse() {
     let text =
         format!("texture t(uv: vec2) -> (height: float) {{height={}\n{lets}let w=uv.x}}", name(50_000));
     let program = compiled(text).expect("compiles").program;
-    let entry = program.graph.function(program.graph.entry());
+    let entry = program.texture().graph.function(program.texture().graph.entry());
     assert!(entry.values.len() > 50_000, "one addition for each `let`");
 }
 
@@ -58,16 +58,19 @@ fn fifty_thousand_lets_in_reverse() {
 fn forty_thousand_lets_of_a_file_in_reverse() {
     let lets: String = (1..=40_000).rev().map(|i| format!("let {}={}+1\n", name(i), name(i - 1))).collect();
     let program = compiled(format!("{lets}let w=2\n{}", height(&name(40_000)))).expect("compiles").program;
-    assert!(program.wgsl.contains("40002f"), "the constant is folded");
+    assert!(program.texture().wgsl.contains("40002f"), "the constant is folded");
 }
 
 #[test]
 fn four_thousand_nodes_each_calling_the_next() {
     let plain = |i: usize| format!("y = f{}(x) + 1.0", i + 1);
     let program = compiled(nodes(4_000, plain)).expect("compiles").program;
-    assert_eq!(program.graph.functions.len(), 1, "single expressions are taken over");
+    assert_eq!(program.texture().graph.functions.len(), 1, "single expressions are taken over");
     let named = |i: usize| format!("let z = f{}(x) * x  y = z + 1.0", i + 1);
-    assert_eq!(compiled(nodes(4_000, named)).expect("compiles").program.graph.functions.len(), 4_001);
+    assert_eq!(
+        compiled(nodes(4_000, named)).expect("compiles").program.texture().graph.functions.len(),
+        4_001
+    );
 }
 
 #[test]

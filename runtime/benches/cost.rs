@@ -43,7 +43,7 @@ fn loaded(file: &Path) -> (Program, Tables) {
     let project = Project::new(file, false);
     let compiled = compile(&library, project.main(), &project, &Options::default());
     let mut program = compiled.expect("the example compiles").program;
-    let tables = load(&program.graph, &mut program.manifest, &project).expect("the example loads");
+    let tables = load(&mut program, &project).expect("the example loads");
     (program, tables)
 }
 

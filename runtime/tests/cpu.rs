@@ -4,12 +4,12 @@ mod common;
 
 use common::programs::{arithmetic, fetched, sampled, tiled};
 use common::{folder, manifest, write_picture};
-use texgraph_compiler::Program;
 use texgraph_compiler::graph::{Builder, Constant, Function, FunctionId, Graph, Scalar, Type, Value};
 use texgraph_compiler::intrinsic::Intrinsic;
 use texgraph_compiler::manifest::{
     self, Encoding, Filter, Format, Input, Level, Output, Recipe, Source, Table, Wrap,
 };
+use texgraph_compiler::{Pass, Program};
 use texgraph_runtime::cpu;
 use texgraph_runtime::picture::{Content, Picture};
 use texgraph_runtime::render::{RenderError, Request};
@@ -188,7 +188,8 @@ fn program_of(mut functions: Vec<Function>) -> Program {
     let float = |width| manifest::Type { scalar: manifest::Scalar::Float, width };
     manifest.inputs = vec![Input { name: "uv".into(), ty: float(2), source: Source::Varying(0) }];
     manifest.outputs = vec![Output { name: "value".into(), ty: float(1), location: 0, is_color: false }];
-    Program { graph: Graph { functions, ..Graph::default() }, manifest, wgsl: String::new() }
+    let pass = Pass { graph: Graph { functions, ..Graph::default() }, wgsl: String::new() };
+    Program { passes: vec![pass], manifest }
 }
 
 /// A function of one float that sums some calls of an earlier one, each of another argument, and 1.
@@ -240,13 +241,14 @@ fn work_without_end_is_refused() {
 #[test]
 fn work_that_no_pixel_changes_is_refused_too() {
     let mut program = chain(64, 2);
-    let entry = program.graph.functions.len() - 1;
+    let entry = program.passes[0].graph.functions.len() - 1;
     let mut b = Builder::new("test");
     b.input("uv", Type::Vector(Scalar::Float, 2));
     let one = b.constant(Constant::floats(&[1.0]));
-    let value = b.call(FunctionId(entry as u32 - 1), &program.graph.functions[entry - 1], vec![one])[0];
+    let value =
+        b.call(FunctionId(entry as u32 - 1), &program.passes[0].graph.functions[entry - 1], vec![one])[0];
     b.output("value", value);
-    program.graph.functions[entry] = b.finish();
+    program.passes[0].graph.functions[entry] = b.finish();
     let result = cpu::render(&program, &Tables::default(), &Request::new([1, 1]), &|_| {});
     assert!(matches!(result, Err(RenderError::TooMuchWork { .. })), "{result:?}");
 }
@@ -294,7 +296,7 @@ fn the_number_of_threads_changes_no_picture() {
 #[test]
 fn a_program_without_functions_is_black() {
     let mut program = arithmetic();
-    program.graph = Graph::default();
+    program.passes[0].graph = Graph::default();
     let picture =
         render(&program, &Tables::default(), &Request { settings: Settings::new(), ..Request::new([2, 2]) });
     assert!(picture.pixels.iter().all(|pixel| *pixel == [0.0; 4]));

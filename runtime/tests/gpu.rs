@@ -182,8 +182,7 @@ fn a_compiled_program_agrees(gpu: &Gpu) -> Result<(), Failed> {
     let library = Library::standard()?;
     let compiled = compile(&library, project.main(), &project, &Options::default());
     let mut program = compiled.map_err(|failure| format!("{:#?}", failure.diagnostics))?.program;
-    let tables =
-        load(&program.graph, &mut program.manifest, &project).map_err(|errors| format!("{errors:#?}"))?;
+    let tables = load(&mut program, &project).map_err(|errors| format!("{errors:#?}"))?;
     for output in 0..program.manifest.outputs.len() {
         let mut request = Request { output, time: 1.5, ..Request::new([200, 150]) };
         request.region = [-0.51, 0.02, 0.93, 1.13];
@@ -221,7 +220,8 @@ fn a_broken_shader_is_an_error(gpu: &Gpu) -> Result<(), Failed> {
         "@fragment fn main() -> @location(0) vec4<f32> { return 1; }",
     ];
     for text in texts {
-        let program = Program { wgsl: text.into(), ..arithmetic() };
+        let mut program = arithmetic();
+        program.passes[0].wgsl = text.into();
         match gpu.prepare(&program, &Tables::default(), 0) {
             Err(RenderError::Gpu(_)) => {}
             Err(other) => return Err(format!("{text}: {other}").into()),

@@ -118,7 +118,7 @@ fn load(main: &str, loader: &Folder) -> Option<Failure> {
         Err(failure) => return Some(failure),
     };
     let project = Project::new(&root().join(main), false);
-    let diagnostics = resource::load(&program.graph, &mut program.manifest, &project).err()?;
+    let diagnostics = resource::load(&mut program, &project).err()?;
     Some(Failure { sources, diagnostics })
 }
 

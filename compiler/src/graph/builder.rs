@@ -192,6 +192,20 @@ impl Builder {
         types.iter().enumerate().map(|(i, ty)| self.push(Operation::Output(call, i as u32), *ty)).collect()
     }
 
+    /// A fold; its accumulators after the last step, in order.
+    pub fn fold(&mut self, fold: super::Fold) -> Vec<Value> {
+        let types: Vec<Type> = fold.starts.iter().map(|v| self.ty(*v)).collect();
+        let first = types.first().copied().unwrap_or(Type::FLOAT);
+        let fold = self.push(Operation::Fold(Box::new(fold)), first);
+        types.iter().enumerate().map(|(i, ty)| self.push(Operation::Output(fold, i as u32), *ty)).collect()
+    }
+
+    /// An entry of a constant table whose entries have one type; the index is an int, clamped.
+    pub fn lookup(&mut self, table: std::sync::Arc<[Constant]>, index: Value) -> Value {
+        let ty = table.first().map_or(Type::FLOAT, Constant::ty);
+        self.push(Operation::Lookup(table, index), ty)
+    }
+
     /// Ints as floats; floats as they are.
     pub fn to_float(&mut self, value: Value) -> Value {
         if self.ty(value).scalar() == Some(Scalar::Int) { self.builtin(TO_FLOAT, &[value]) } else { value }

@@ -67,6 +67,19 @@ impl Display for Shown<'_> {
             }
             Operation::Size(v) => write!(f, "size {v}"),
             Operation::Call(id, v) => write!(f, "call {} ({})", id.0, list(v)),
+            Operation::Lookup(table, v) => write!(f, "lookup {table:?} at {v}"),
+            Operation::Fold(fold) => {
+                write!(
+                    f,
+                    "fold {} ({}) for {} of {}",
+                    fold.body.0,
+                    list(&fold.starts),
+                    fold.steps,
+                    fold.most
+                )?;
+                fold.condition.iter().try_for_each(|condition| write!(f, " while {}", condition.0))?;
+                write!(f, " over ({})", list(&fold.captures))
+            }
             Operation::Output(v, i) => write!(f, "output {v}.{i}"),
             Operation::Derivative(v, axis) => write!(f, "derivative {v} {axis:?}"),
         }

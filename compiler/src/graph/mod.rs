@@ -13,6 +13,7 @@ pub use builder::Builder;
 pub use constant::Constant;
 
 use crate::intrinsic::Intrinsic;
+use std::sync::Arc;
 use texgraph_grammar::syntax::Span;
 
 /// The type of a component.
@@ -178,13 +179,55 @@ pub enum Operation {
     },
     /// Size of level 0 in texels, ints, layers not counted.
     Size(Value),
+    /// An entry of a constant table, two or more of one type. The index is an int, clamped.
+    Lookup(Arc<[Constant]>, Value),
     /// All outputs of a function. Only [`Operation::Output`] may read it.
     Call(FunctionId, Vec<Value>),
-    /// One output of a call.
+    /// All accumulators after the last step. Only [`Operation::Output`] may read it.
+    Fold(Box<Fold>),
+    /// One output of a call, or one accumulator of a fold.
     Output(Value, u32),
     /// Screen derivative, one pixel to the right or down. After `pass::differentiate` only of the
     /// entry's inputs.
     Derivative(Value, Axis),
+}
+
+/// A loop: accumulators go through the same function again and again.
+///
+/// A range over a box is counted by one int here; the body makes the place in the box of it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Fold {
+    /// One step. Takes the accumulators, the number of the step (an int from 0) and the captures,
+    /// in this order; gives the next accumulators.
+    pub body: FunctionId,
+    /// Tested before each step; the first time it does not hold ends the loop. Takes the
+    /// accumulators and the captures; gives one bool.
+    pub condition: Option<FunctionId>,
+    /// The accumulators before the first step; at least one.
+    pub starts: Vec<Value>,
+    /// How many steps there are, an int; none where it is negative.
+    pub steps: Value,
+    /// The most steps, known when compiling: further ones are not taken.
+    pub most: u32,
+    /// What body and condition read from outside, beside params and views.
+    pub captures: Vec<Value>,
+}
+
+impl Fold {
+    /// Calls `f` with each operand: the starts, the steps, the captures.
+    pub fn for_operands(&self, mut f: impl FnMut(Value)) {
+        self.starts.iter().chain([&self.steps]).chain(&self.captures).for_each(|v| f(*v));
+    }
+
+    /// The same fold over other operands.
+    pub fn map_operands(&self, mut f: impl FnMut(Value) -> Value) -> Fold {
+        Fold {
+            starts: self.starts.iter().map(|v| f(*v)).collect(),
+            steps: f(self.steps),
+            captures: self.captures.iter().map(|v| f(*v)).collect(),
+            ..*self
+        }
+    }
 }
 
 /// The level of detail of a sample.
@@ -206,8 +249,10 @@ impl Operation {
             Operation::Builtin(_, operands) | Operation::Compose(operands) | Operation::Call(_, operands) => {
                 operands.iter().copied().for_each(f);
             }
+            Operation::Fold(fold) => fold.for_operands(f),
             Operation::Extract(v, _)
             | Operation::Size(v)
+            | Operation::Lookup(_, v)
             | Operation::Output(v, _)
             | Operation::Derivative(v, _) => f(*v),
             Operation::Select(a, b, c) => [*a, *b, *c].into_iter().for_each(f),
@@ -240,6 +285,8 @@ impl Operation {
             Operation::Builtin(i, vs) => Operation::Builtin(*i, all(vs, &mut f)),
             Operation::Compose(vs) => Operation::Compose(all(vs, &mut f)),
             Operation::Call(id, vs) => Operation::Call(*id, all(vs, &mut f)),
+            Operation::Fold(fold) => Operation::Fold(Box::new(fold.map_operands(f))),
+            Operation::Lookup(table, v) => Operation::Lookup(Arc::clone(table), f(*v)),
             Operation::Extract(v, i) => Operation::Extract(f(*v), *i),
             Operation::Size(v) => Operation::Size(f(*v)),
             Operation::Output(v, i) => Operation::Output(f(*v), *i),

@@ -50,6 +50,7 @@ impl Lowering<'_> {
                 let size = body.add(Expression::ImageQuery { image: frame.get(*view), query });
                 body.convert(size, ScalarKind::Sint)
             }
+            Operation::Lookup(..) | Operation::Fold(_) => unreachable!("not lowered yet"),
             Operation::Call(callee, arguments) => self.call(body, frame, value, callee.0 as usize, arguments),
             Operation::Output(call, i) => match frame.function.operation(*call) {
                 Operation::Call(callee, _) if self.functions[callee.0 as usize].is_struct => {

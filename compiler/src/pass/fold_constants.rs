@@ -29,6 +29,11 @@ pub fn fold(function: &Function, operation: &Operation) -> Option<Folded> {
         }
         Operation::Compose(parts) => compose(function, parts),
         Operation::Extract(vector, i) => extract(function, *vector, *i),
+        Operation::Lookup(table, index) => {
+            let last = table.len().saturating_sub(1);
+            let entry = usize::try_from(known(function, *index)?.int(0)).unwrap_or(0).min(last);
+            table.get(entry).map(|entry| Folded::Operation(Operation::Constant(*entry)))
+        }
         Operation::Select(condition, yes, no) if yes == no || known(function, *condition).is_some() => {
             let holds = known(function, *condition).is_none_or(|c| c.bool(0));
             Some(Folded::Value(if holds { *yes } else { *no }))

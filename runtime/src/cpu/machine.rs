@@ -157,10 +157,16 @@ pub fn evaluate(
         Operation::Size(view) => {
             Constant::ints(&texture(*view).map_or([1, 1], |texture| texture.size().to_array()))
         }
+        Operation::Lookup(table, index) => {
+            let last = table.len().saturating_sub(1);
+            let index = usize::try_from(read(*index).int(0)).unwrap_or(0).min(last);
+            table.get(index).copied().unwrap_or_else(zero)
+        }
         // The plan makes registers of these, and runs calls itself.
         Operation::Input(_)
         | Operation::Param(_)
         | Operation::Call(..)
+        | Operation::Fold(_)
         | Operation::Output(..)
         | Operation::Derivative(..) => zero(),
     }

@@ -34,7 +34,7 @@ pub fn render(
     progress: &(dyn Fn(f32) + Sync),
 ) -> Result<Picture, RenderError> {
     let mut picture = request.picture(program)?;
-    let textures = texture::decode_all(&program.graph, &program.manifest, tables)?;
+    let textures = texture::decode_all(&program.texture().graph, &program.manifest, tables)?;
     let plan = Plan::new(program, request, &textures)?;
     let [width, height] = request.size.map(|side| side as usize);
     let done = AtomicUsize::new(0);

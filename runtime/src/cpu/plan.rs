@@ -74,7 +74,7 @@ impl Plan {
     /// # Errors
     /// A pixel takes more than [`MAX_OPERATIONS`].
     pub fn new(program: &Program, request: &Request, textures: &[Texture]) -> Result<Plan, RenderError> {
-        let graph = &program.graph;
+        let graph = &program.texture().graph;
         let live = demand(graph, request.output);
         let entry = graph.functions.len().saturating_sub(1);
         let mut plan = Plan { functions: Vec::new(), entry, output: request.output, inputs: Vec::new() };
@@ -228,7 +228,7 @@ impl<'a> Planner<'a> {
         };
         match operation {
             Operation::Param(id) => {
-                let name = &self.program.graph.params.get(id.0 as usize)?.name;
+                let name = &self.program.texture().graph.params.get(id.0 as usize)?.name;
                 let param = self.program.manifest.params.iter().find(|param| param.name == *name)?;
                 Some(State::Known(constant(&self.request.settings.value(param))))
             }

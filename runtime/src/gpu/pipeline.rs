@@ -42,7 +42,7 @@ pub fn build(
         immediate_size: 0,
     });
     let vertex = shader(gpu, "corners", vertex_stage(manifest));
-    let fragment = shader(gpu, &pass.name, program.wgsl.clone());
+    let fragment = shader(gpu, &pass.name, program.texture().wgsl.clone());
     let (attributes, stride) = attributes(manifest);
     let corners = wgpu::VertexBufferLayout {
         array_stride: stride,

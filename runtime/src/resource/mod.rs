@@ -19,8 +19,8 @@ use crate::project::Project;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::sync::Arc;
 use table::Made;
+use texgraph_compiler::Program;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
-use texgraph_compiler::graph::Graph;
 use texgraph_compiler::manifest::{Manifest, Recipe};
 
 /// The bytes of every texture of a program. Cloning shares them.
@@ -61,8 +61,10 @@ impl Tables {
 ///
 /// # Errors
 /// Everything that is wrong with any resource, in the order of the resources.
-pub fn load(graph: &Graph, manifest: &mut Manifest, project: &Project) -> Result<Tables, Vec<Diagnostic>> {
-    let made: Vec<Result<Vec<Made>, Vec<Diagnostic>>> = manifest
+pub fn load(program: &mut Program, project: &Project) -> Result<Tables, Vec<Diagnostic>> {
+    let graph = &program.texture().graph;
+    let made: Vec<Result<Vec<Made>, Vec<Diagnostic>>> = program
+        .manifest
         .resources
         .par_iter()
         .enumerate()
@@ -78,7 +80,7 @@ pub fn load(graph: &Graph, manifest: &mut Manifest, project: &Project) -> Result
     let mut errors = Vec::new();
     for (index, made) in made.into_iter().enumerate() {
         match made {
-            Ok(made) => enter(index, made, manifest, &mut tables),
+            Ok(made) => enter(index, made, &mut program.manifest, &mut tables),
             Err(found) => errors.extend(found),
         }
     }
@@ -92,6 +94,8 @@ fn make(project: &Project, place: Place, recipe: &Recipe) -> Result<Vec<Made>, V
         Recipe::Patterns { paths, grid, encoding } => patterns::make(project, place, paths, *grid, *encoding),
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+        // Made by rendering its pass.
+        Recipe::Bake { .. } => Ok(Vec::new()),
     }
 }
 

@@ -6,6 +6,7 @@ pub mod programs;
 
 use std::path::Path;
 use tempfile::TempDir;
+use texgraph_compiler::Program;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
 use texgraph_compiler::graph::Graph;
 use texgraph_compiler::manifest::{
@@ -58,6 +59,9 @@ pub fn manifest() -> Manifest {
         resources: Vec::new(),
         passes: vec![Pass {
             name: "test".into(),
+            bake: None,
+            reads: Vec::new(),
+            params: Vec::new(),
             shader: "test.wgsl".into(),
             entry_point: "main".into(),
             gradients: Gradients::Derive,
@@ -72,6 +76,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Patterns { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
         Recipe::Permutation { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
+        Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
     };
     let sampler =
         Sampler { name: format!("s{n}_"), group: 0, binding: 2 * n + 2, wrap, filter, anisotropy: 1 };
@@ -112,6 +117,7 @@ pub fn load_recipes(folder: &Path, recipes: Vec<Recipe>) -> Result<(Manifest, Ta
     let numbered = (0..).zip(recipes);
     manifest.resources =
         numbered.map(|(n, recipe)| resource(recipe, n, Wrap::Repeat, Filter::Linear)).collect();
-    let graph = graph_of(&manifest);
-    load(&graph, &mut manifest, &project(folder)).map(|tables| (manifest, tables))
+    let pass = texgraph_compiler::Pass { graph: graph_of(&manifest), wgsl: String::new() };
+    let mut program = Program { passes: vec![pass], manifest };
+    load(&mut program, &project(folder)).map(|tables| (program.manifest, tables))
 }

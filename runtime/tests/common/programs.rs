@@ -2,13 +2,13 @@
 
 use super::{graph_of, manifest, project, resource};
 use std::path::Path;
-use texgraph_compiler::Program;
 use texgraph_compiler::graph::{
     Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, ParamId, ResourceView, Scalar,
     Texel, Type, Value, View, ViewDimension, ViewId,
 };
 use texgraph_compiler::intrinsic::Intrinsic;
 use texgraph_compiler::manifest::{self, Filter, Input, Output, Param, Recipe, Source, Uniform, Wrap};
+use texgraph_compiler::{Pass, Program};
 use texgraph_runtime::resource::{Tables, load};
 
 const VEC2: Type = Type::Vector(Scalar::Float, 2);
@@ -46,7 +46,7 @@ fn program(graph: Graph, wgsl: &str) -> Program {
         offset: Some(0),
     }];
     manifest.uniform = Some(Uniform { name: "params".into(), group: 0, binding: 0, size: 16 });
-    Program { graph, manifest, wgsl: wgsl.into() }
+    Program { passes: vec![Pass { graph, wgsl: wgsl.into() }], manifest }
 }
 
 fn scale_param() -> texgraph_compiler::graph::Param {
@@ -82,10 +82,10 @@ fn with_resource(
     };
     let field = ["pixels", "layers", "table", "map"].into_iter().find(|field| *field == texture.field);
     let field = field.expect("a known field");
-    program.graph.views = vec![ResourceView { resource: 0, field, view }];
+    program.passes[0].graph.views = vec![ResourceView { resource: 0, field, view }];
     program.manifest.resources = vec![resource];
-    program.graph.resources = graph_of(&program.manifest).resources;
-    let tables = load(&program.graph, &mut program.manifest, &project(folder)).expect("the resource loads");
+    program.passes[0].graph.resources = graph_of(&program.manifest).resources;
+    let tables = load(&mut program, &project(folder)).expect("the resource loads");
     (program, tables)
 }
 
