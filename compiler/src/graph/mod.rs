@@ -8,6 +8,7 @@
 mod builder;
 mod constant;
 mod dump;
+pub mod evaluate;
 
 pub use builder::Builder;
 pub use constant::Constant;
