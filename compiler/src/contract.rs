@@ -3,11 +3,11 @@
 //! Lowering reads the names and places from here, so the two can't disagree.
 
 use crate::Options;
-use crate::graph::{self, Constant, Graph, Operation, ParamId, Scalar, ViewDimension, ViewId};
+use crate::graph::{self, Constant, Graph, Operation, ParamId, PassGraph, Scalar, ViewDimension, ViewId};
 use crate::input::is_per_draw;
 use crate::manifest::{
-    self, Form, Gradients, Input, Manifest, Output, Param, Pass, Resource, SampleKind, Sampler, Source,
-    Texture, Type, Uniform, Value,
+    self, Form, Gradients, Input, Manifest, Output, Param, Pass, Recipe, Resource, SampleKind, Sampler,
+    Source, Table, Texture, Type, Uniform, Value,
 };
 use crate::naming::{self, Scope};
 use std::collections::BTreeSet;
@@ -37,13 +37,20 @@ pub fn reads(graph: &Graph) -> Reads {
     reads
 }
 
-/// Everything a host has to know of a graph's shader.
-pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
+/// Everything a host has to know of a program's shaders: bakes with the resources they fill, then
+/// the texture. There is at least one graph.
+pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifest {
+    let Some(PassGraph { graph, .. }) = graphs.last() else { unreachable!("a program has a pass") };
     let entry = graph.function(graph.entry());
     let name = naming::identifier(&entry.name);
-    let reads = reads(graph);
+    let each: Vec<Reads> = graphs.iter().map(|pass| reads(&pass.graph)).collect();
+    let mut all = Reads { params: BTreeSet::new(), views: BTreeSet::new() };
+    for reads in &each {
+        all.params.extend(&reads.params);
+        all.views.extend(&reads.views);
+    }
     let mut block = Block::default();
-    let params = params(graph, &reads, &mut block);
+    let params = params(graph, &all, &mut block);
     let inputs = inputs(entry, options.form, &mut block);
     let mut next = options.first_binding;
     // Global names are public: they are chosen here, apart from each other, and lowering keeps away.
@@ -61,7 +68,28 @@ pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
             size: block.size.next_multiple_of(16),
         }
     });
-    let derivative = |op: &Operation| matches!(op, Operation::Derivative(..));
+    let resources = resources(graph, &all, &name, &mut scope, (options.group, next));
+    let mut files = Scope::default();
+    files.take(&entry.name);
+    let passes = graphs.iter().zip(&each).map(|(PassGraph { graph: pass, bake }, reads)| {
+        let function = pass.function(pass.entry());
+        let shader = match bake {
+            Some(_) => files.name(&format!("{}_{}", entry.name, function.name)),
+            None => entry.name.clone(),
+        };
+        Pass {
+            name: function.name.clone(),
+            bake: *bake,
+            reads: views(graph, reads),
+            params: reads.params.iter().map(|id| graph.params[id.0 as usize].name.clone()).collect(),
+            shader: format!("{shader}.wgsl"),
+            entry_point: match bake {
+                Some(_) => format!("{}_fragment", naming::identifier(&shader)),
+                None => entry_point.clone(),
+            },
+            gradients: gradients(function),
+        }
+    });
     Manifest {
         version: manifest::VERSION,
         generator: format!("texgraph {}", env!("CARGO_PKG_VERSION")),
@@ -72,22 +100,35 @@ pub fn manifest(graph: &Graph, label: &str, options: &Options) -> Manifest {
         outputs: outputs(entry),
         params,
         uniform,
-        resources: resources(graph, &reads, &name, &mut scope, (options.group, next)),
-        passes: vec![Pass {
-            name: entry.name.clone(),
-            bake: None,
-            reads: reads
-                .views
-                .iter()
-                .map(|id| &graph.views[id.0 as usize])
-                .map(|view| (view.resource, view.field.to_owned()))
-                .collect(),
-            params: reads.params.iter().map(|id| graph.params[id.0 as usize].name.clone()).collect(),
-            shader: format!("{}.wgsl", entry.name),
-            entry_point,
-            gradients: if entry.values.iter().any(derivative) { Gradients::Derive } else { Gradients::None },
-        }],
+        passes: passes.collect(),
+        resources,
     }
+}
+
+/// What lowering reads of the manifest for one of its passes: a bake is a texture of its own, in
+/// the complete form, over the program's bindings.
+pub fn of_pass(manifest: &Manifest, index: usize) -> Manifest {
+    let mut own = manifest.clone();
+    own.passes = manifest.passes.get(index).cloned().into_iter().collect();
+    let Some(pass) = own.passes.first().filter(|pass| pass.bake.is_some()) else { return own };
+    let float = |width| Type { scalar: manifest::Scalar::Float, width };
+    own.texture = pass.shader.trim_end_matches(".wgsl").to_owned();
+    own.form = Form::Complete;
+    own.inputs = vec![Input { name: "uv".to_owned(), ty: float(2), source: Source::Varying(0) }];
+    let texel = Output { name: "texel".to_owned(), ty: float(4), location: 0, is_color: false };
+    own.outputs = vec![texel];
+    own
+}
+
+/// The views that a pass reads, as resource and field.
+fn views(graph: &Graph, reads: &Reads) -> Vec<(u32, String)> {
+    let views = reads.views.iter().map(|id| &graph.views[id.0 as usize]);
+    views.map(|view| (view.resource, view.field.to_owned())).collect()
+}
+
+fn gradients(entry: &graph::Function) -> Gradients {
+    let derivative = |operation: &Operation| matches!(operation, Operation::Derivative(..));
+    if entry.values.iter().any(derivative) { Gradients::Derive } else { Gradients::None }
 }
 
 /// The uniform block as it grows.
@@ -205,10 +246,20 @@ fn resources(
                 filter: state.filter,
                 anisotropy: 1,
             }),
-            table: None,
+            table: baked(&resource.recipe),
         });
     }
     all
+}
+
+/// The table of a bake, which is known before anything is drawn.
+fn baked(recipe: &Recipe) -> Option<Table> {
+    match recipe {
+        Recipe::Bake { size: [width, height], format } => {
+            Some(Table::mipmapped(*format, [*width, *height], 1))
+        }
+        _ => None,
+    }
 }
 
 fn public_type(ty: graph::Type) -> Type {

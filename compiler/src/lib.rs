@@ -30,13 +30,14 @@ pub use manifest::{Form, Manifest};
 
 use crate::check::Checker;
 use crate::diagnostic::{Place, limits};
-use crate::graph::Graph;
+use crate::graph::{Graph, PassGraph};
 use crate::module::{Loader, Modules, Sources};
 
 /// What to compile, and how to wrap it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// The texture; the file's first when none.
+    /// The texture; the file's first when none. A node's name means the node on its own, its inputs
+    /// fed from the place; `name.wire` means a wire inside a texture or node.
     pub texture: Option<String>,
     /// The outputs wanted; all when none. Work that only others need is left out.
     pub outputs: Option<Vec<String>>,
@@ -113,12 +114,17 @@ pub fn compile(
 ) -> Result<Compiled, Failure> {
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
-    let (graph, label) = checked(library, &modules, options).map_err(fail)?;
-    let graph = pass::run(graph);
-    let manifest = contract::manifest(&graph, &label, options);
-    let wgsl = emit::wgsl(&lower::lower(&graph, &manifest))
-        .map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
-    let passes = vec![Pass { graph, wgsl }];
+    let (graphs, label) = checked(library, &modules, options).map_err(fail)?;
+    let optimised =
+        graphs.into_iter().map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph), bake });
+    let graphs: Vec<PassGraph> = optimised.collect();
+    let manifest = contract::manifest(&graphs, &label, options);
+    let mut passes = Vec::new();
+    for (i, PassGraph { graph, .. }) in graphs.into_iter().enumerate() {
+        let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i));
+        let wgsl = emit::wgsl(&lowered).map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
+        passes.push(Pass { graph, wgsl });
+    }
     Ok(Compiled { program: Program { passes, manifest }, sources: modules.sources })
 }
 
@@ -158,12 +164,12 @@ fn main_place(modules: &Modules) -> Place {
     Place { file: modules.modules.last().map_or(0, |module| module.file), ..Place::default() }
 }
 
-/// The graph of the chosen texture with its documentation.
+/// The graphs of the chosen texture and the bakes before it, with its documentation.
 fn checked(
     library: &Library,
     modules: &Modules,
     options: &Options,
-) -> Result<(Graph, String), Vec<Diagnostic>> {
+) -> Result<(Vec<PassGraph>, String), Vec<Diagnostic>> {
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     let key = checker.texture(options.texture.as_deref());
@@ -175,11 +181,13 @@ fn checked(
     };
     let label = checker.doc(&key);
     let head = checker.head_of(&key);
-    let Some(mut graph) = checker.into_graph(&key) else {
+    let Some(mut graphs) = checker.into_graphs(&key) else {
         return Err(vec![limits::bug(main_place(modules), "a checked texture has no graph")]);
     };
-    choose_outputs(&mut graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
-    Ok((graph, label))
+    if let Some(last) = graphs.last_mut() {
+        choose_outputs(&mut last.graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
+    }
+    Ok((graphs, label))
 }
 
 /// Leaves only the outputs that are wanted.

@@ -393,6 +393,37 @@ pub struct Table {
     pub levels: Vec<Level>,
 }
 
+impl Table {
+    /// A table of all levels down to one texel: a level's layers follow one another, rows have no
+    /// padding.
+    pub fn mipmapped(format: Format, size: [u32; 2], layers: u32) -> Table {
+        let [width, height] = size;
+        Table::with_levels(format, size, layers, width.max(height).max(1).ilog2() + 1)
+    }
+
+    /// A table of so many levels.
+    pub fn with_levels(format: Format, size: [u32; 2], layers: u32, count: u32) -> Table {
+        let [width, height] = size;
+        let mut offset = 0;
+        let levels = (0..count).map(|level| {
+            let [width, height] = size.map(|side| (side >> level).max(1));
+            let bytes_per_row = width * format.bytes();
+            let level = Level { offset, width, height, layers, bytes_per_row };
+            offset += level.bytes();
+            level
+        });
+        let levels = levels.collect();
+        Table { file: None, format, width, height, layers, levels }
+    }
+}
+
+impl Level {
+    /// Bytes of the level, all layers.
+    pub fn bytes(&self) -> u64 {
+        u64::from(self.bytes_per_row) * u64::from(self.height) * u64::from(self.layers)
+    }
+}
+
 /// One level of a table. All its layers follow one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Level {

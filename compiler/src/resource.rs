@@ -5,8 +5,8 @@
 //! bytes.
 
 use crate::diagnostic::{Diagnostic, Place, constructors};
-use crate::graph::{Constant, Texel, View, ViewDimension};
-use crate::manifest::{Encoding, Filter, IndicesSource, Recipe, Wrap};
+use crate::graph::{Constant, FunctionId, Texel, View, ViewDimension};
+use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Wrap};
 
 /// A resource of a program: one constructor call.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub struct Resource {
     pub recipe: Recipe,
     /// The sampler of its views, if they are sampled.
     pub sampler: Option<SamplerState>,
+    /// Of a bake: the function that gives its texels, from a place in 0..1 to four floats.
+    pub bake: Option<FunctionId>,
 }
 
 /// How a view is sampled.
@@ -41,6 +43,8 @@ pub struct Kind {
     pub constructor: &'static str,
     /// One line for the reference.
     pub doc: &'static str,
+    /// The kind that the constructor makes, if that is another row's.
+    pub gives: Option<&'static str>,
     /// What shaders read.
     pub fields: &'static [Field],
     /// The view that `sample`, `texel` and `.size` of the resource itself mean.
@@ -98,6 +102,8 @@ pub enum Argument {
     Number(Constant),
     /// A bare word.
     Word(String),
+    /// A node.
+    Node,
 }
 
 impl Arguments {
@@ -174,6 +180,9 @@ const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled 
 const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled };
 const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer };
 
+/// The longest side of a bake: what every GPU can hold.
+const MAX_BAKE: i32 = 8192;
+
 /// Every kind.
 pub static KINDS: &[Kind] = &[
     Kind {
@@ -181,6 +190,7 @@ pub static KINDS: &[Kind] = &[
         constructor: "(path: text, wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
                       encoding: srgb | linear | normal = srgb, anisotropy: int = 1) -> image",
         doc: "A picture with its mip levels.",
+        gives: None,
         fields: &[Field { name: "pixels", kind: FieldKind::View(PIXELS) }],
         view: Some("pixels"),
         make: make_image,
@@ -190,6 +200,7 @@ pub static KINDS: &[Kind] = &[
         constructor: "(paths: texts, grid: ivec2 = 1, encoding: srgb | linear | normal = srgb, \
                       filter: linear | nearest = linear, anisotropy: int = 1) -> patterns",
         doc: "Interchangeable tiles, one layer each with its own mip levels.",
+        gives: None,
         fields: &[
             Field { name: "layers", kind: FieldKind::View(LAYERS) },
             Field { name: "count", kind: FieldKind::Constant },
@@ -201,6 +212,7 @@ pub static KINDS: &[Kind] = &[
         name: "permutation",
         constructor: "(size: int, seed: int = 0) -> permutation",
         doc: "A table of four independent permutations of 0..size.",
+        gives: None,
         fields: &[
             Field { name: "table", kind: FieldKind::View(INTEGERS) },
             Field { name: "size", kind: FieldKind::Constant },
@@ -212,6 +224,7 @@ pub static KINDS: &[Kind] = &[
         name: "indices",
         constructor: "(cells: cells, levels: int = 256) -> indices",
         doc: "An integer map, which wraps.",
+        gives: None,
         fields: &[
             Field { name: "map", kind: FieldKind::View(INTEGERS) },
             Field { name: "levels", kind: FieldKind::Constant },
@@ -219,7 +232,24 @@ pub static KINDS: &[Kind] = &[
         view: Some("map"),
         make: make_indices,
     },
+    Kind {
+        name: "bake",
+        constructor: "(field: node(at: vec2) -> texel, size: ivec2 = 512, \
+                      wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
+                      format: rgba16float | rgba8unorm | rgba8snorm = rgba16float) -> image",
+        doc: "The values of a node over 0..1, a texel each, with mip levels: a virtual texture made explicit.",
+        gives: Some("image"),
+        fields: &[],
+        view: None,
+        make: make_bake,
+    },
 ];
+
+/// The row of the kind that a row's constructor makes.
+pub fn made_by(row: usize) -> usize {
+    let gives = KINDS[row].gives;
+    gives.and_then(|name| KINDS.iter().position(|kind| kind.name == name)).unwrap_or(row)
+}
 
 /// Kinds of the language that are not built yet.
 pub const LATER: &[&str] = &[
@@ -232,7 +262,6 @@ pub const LATER: &[&str] = &[
     "positions",
     "pixel_map",
     "ramp",
-    "bake",
 ];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
@@ -240,6 +269,26 @@ fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let path = a.paths("path").into_iter().next().unwrap_or_default();
     Ok(Made {
         recipe: Recipe::Image { path, encoding: a.encoding() },
+        constants: Vec::new(),
+        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
+    })
+}
+
+fn make_bake(a: &Arguments) -> Result<Made, Diagnostic> {
+    let size = match a.get("size") {
+        Some((Argument::Number(c), _)) => [c.int(0), c.int(1)],
+        _ => [1, 1],
+    };
+    if let Some(side) = size.iter().find(|side| !(1..=MAX_BAKE).contains(*side)) {
+        return Err(constructors::out_of_bounds(a.place("size"), "size", *side, 1, MAX_BAKE));
+    }
+    let format = match a.word("format") {
+        "rgba8unorm" => Format::Rgba8Unorm,
+        "rgba8snorm" => Format::Rgba8Snorm,
+        _ => Format::Rgba16Float,
+    };
+    Ok(Made {
+        recipe: Recipe::Bake { size: size.map(|side| side as u32), format },
         constants: Vec::new(),
         sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
     })

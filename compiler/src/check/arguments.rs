@@ -3,10 +3,10 @@
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;
 use super::{Checker, Frame};
-use crate::diagnostic::{Place, arguments as sentences, types as errors};
+use crate::diagnostic::{Place, arguments as sentences, names, nodes, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
 use crate::resource::{FieldKind, KINDS};
-use texgraph_grammar::syntax::{Dim, Input, Name};
+use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name};
 
 /// An argument, evaluated.
 #[derive(Clone)]
@@ -17,8 +17,19 @@ pub struct Given<'a> {
     pub wire: Wire,
     /// Where it stands.
     pub place: Place,
-    /// The name itself, if the argument is nothing but a name: it may be a choice.
-    pub word: Option<&'a str>,
+    /// The expression, when there is one: a name may be a choice or a node, a lambda is made when
+    /// the type of its input is known.
+    pub expr: Option<&'a Expr>,
+}
+
+impl<'a> Given<'a> {
+    /// The name itself, if the argument is nothing but a name.
+    pub fn word(&self) -> Option<&'a str> {
+        match self.expr.map(|expr| &expr.kind) {
+            Some(ExprKind::Name(name)) => Some(name),
+            _ => None,
+        }
+    }
 }
 
 /// The head of what is called.
@@ -184,15 +195,14 @@ impl<'a> Checker<'a> {
             Ok(declared) => declared,
             Err(error) => return self.report(f, error),
         };
-        let given = match (slot, &input.default) {
-            (Some(given), _) => given,
+        match (slot, &input.default) {
+            (Some(given), _) => self.coerce(f, &input.name.text, &declared, given),
             (None, Some(default)) => {
-                let wire = self.default(f, head, default, bound);
-                Given { name: None, wire, place, word: None }
+                let input = (input.name.text.as_str(), &declared);
+                self.default(f, head, default, bound, input, place)
             }
-            (None, None) => return Wire::Unknown,
-        };
-        self.coerce(f, &input.name.text, &declared, given)
+            (None, None) => Wire::Unknown,
+        }
     }
 
     /// A default is an expression of the callee's file that may read earlier inputs.
@@ -200,8 +210,10 @@ impl<'a> Checker<'a> {
         &mut self,
         f: &mut Frame<'a>,
         head: Head<'a>,
-        default: &'a texgraph_grammar::syntax::Expr,
+        default: &'a Expr,
         bound: &Bound,
+        (input, declared): (&str, &Declared),
+        place: Place,
     ) -> Wire {
         let earlier = head.inputs.iter().zip(&bound.wires);
         let scope = earlier.map(|(input, wire)| (input.name.text.as_str(), wire.clone())).collect();
@@ -209,18 +221,31 @@ impl<'a> Checker<'a> {
         let dims = std::mem::replace(&mut f.dims, bound.dims.clone());
         let scopes = std::mem::replace(&mut f.scopes, vec![scope]);
         let unknown = std::mem::take(&mut f.unknown);
+        let base = std::mem::replace(&mut f.base, 0);
         f.foreign += 1;
         let wire = self.expr(f, default);
+        let wire = self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
         f.foreign -= 1;
-        (f.module, f.dims, f.scopes, f.unknown) = (module, dims, scopes, unknown);
+        (f.module, f.dims, f.scopes, f.unknown, f.base) = (module, dims, scopes, unknown, base);
         wire
     }
 
     /// A wire as one of a declared type.
     pub fn coerce(&mut self, f: &mut Frame<'a>, input: &str, declared: &Declared, given: Given<'a>) -> Wire {
-        let Given { wire, place, word, .. } = given;
+        if let Declared::Node(ty) = declared {
+            return match given.wire {
+                Wire::Unknown => Wire::Unknown,
+                _ => self.node_argument(f, input, ty, &given),
+            };
+        }
+        let word = given.word();
+        let Given { wire, place, .. } = given;
         match (declared, wire) {
             (_, Wire::Unknown) => Wire::Unknown,
+            (_, Wire::Lambda) => self.report(f, nodes::lambda_as_value(place)),
+            (Declared::Matrix(size), wire) => {
+                self.coerce_matrix(f, &wire, *size, place).map_or(Wire::Unknown, Wire::Matrix)
+            }
             (Declared::Vector(scalar, width), wire) => self
                 .coerce_named(f, &wire, (*scalar, *width), place, Some(input))
                 .map_or(Wire::Unknown, Wire::Value),
@@ -247,6 +272,7 @@ impl<'a> Checker<'a> {
             (Declared::Text, Wire::Text(text)) => Wire::Text(text),
             (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire,
             (_, Wire::Word(word, at)) => self.unknown_value(f, &word, at),
+            (_, Wire::Callables(nodes)) => self.report(f, names::node_as_value(place, &nodes.name)),
             (declared, wire) => {
                 let found = types::describe(&wire, |v| f.builder.ty(v));
                 let wanted = match declared {
@@ -272,9 +298,15 @@ impl<'a> Checker<'a> {
                 let names: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
                 self.report(f, errors::record_as_value(place, &names));
             }
+            Wire::Callables(nodes) => {
+                self.report(f, names::node_as_value(place, &nodes.name));
+            }
+            Wire::Lambda => {
+                self.report(f, nodes::lambda_as_value(place));
+            }
             Wire::Resource(resource) => {
-                let nodes = self.readers(resource.kind);
-                self.report(f, errors::resource_as_value(place, KINDS[resource.kind].name, &nodes));
+                let readers = self.readers(resource.kind);
+                self.report(f, errors::resource_as_value(place, KINDS[resource.kind].name, &readers));
             }
             other => {
                 let what = types::describe(other, |v| f.builder.ty(v));

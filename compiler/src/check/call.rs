@@ -3,20 +3,39 @@
 use super::arguments::{Bound, Given, Head};
 use super::types;
 use super::view::view_of;
-use super::wire::{ArgumentKey, Key, Wire};
+use super::wire::{ArgumentKey, ImportedNodes, Key, Wire};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, arguments as sentences, names};
-use crate::graph::{Operation, Value};
+use crate::graph::{Constant, FunctionId, Operation, Value};
 use crate::library::Callable;
 use crate::resource::KINDS;
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Argument, Call, Expr, ExprKind, Input, Span, TypeKind};
+use texgraph_grammar::syntax::{Argument, Call, Dim, Expr, ExprKind, Input, Postfix, Span, TypeKind};
+
+/// What is called, as written.
+#[derive(Clone, Copy)]
+pub struct Callee<'a> {
+    /// The name.
+    pub name: &'a str,
+    /// Where it stands.
+    pub place: Place,
+    /// `<n>`
+    pub dim: Option<&'a Dim>,
+}
 
 impl<'a> Checker<'a> {
+    pub(super) fn callee(&self, f: &Frame<'a>, call: &'a Call) -> Callee<'a> {
+        Callee { name: &call.name.text, place: self.place(f, call.name.span), dim: call.dim.as_ref() }
+    }
+
     /// `name<n>(arguments)`
     pub(super) fn call(&mut self, f: &mut Frame<'a>, call: &'a Call, span: Span) -> Wire {
         let place = self.place(f, span);
         let given = self.given(f, &call.arguments);
+        if let Some(Wire::Node(node)) = f.lookup(&call.name.text) {
+            let callee = self.callee(f, call);
+            return self.call_passed(f, &node, callee, given, place);
+        }
         let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty()
             && let Some(wire) = self.special(f, call, &given, place)
@@ -24,9 +43,11 @@ impl<'a> Checker<'a> {
             return wire;
         }
         if candidates.is_empty() {
-            return self.no_callable(f, call, &given);
+            let callee = self.callee(f, call);
+            return self.no_callable(f, callee, &given);
         }
-        self.call_one_of(f, &candidates, call, given, place)
+        let callee = self.callee(f, call);
+        self.call_one_of(f, &candidates, callee, given, place)
     }
 
     /// `base.name<n>(arguments)`: the base is the first argument.
@@ -50,8 +71,12 @@ impl<'a> Checker<'a> {
             return Wire::Unknown;
         }
         let sampled = matches!(call.name.text.as_str(), "sample" | "texel" | "level");
-        let receiver = Given { name: None, wire: base, place: base_place, word: None };
+        let receiver = Given { name: None, wire: base, place: base_place, expr: None };
         let given: Vec<Given<'a>> = std::iter::once(receiver).chain(arguments).collect();
+        let callee = self.callee(f, call);
+        if let Some(Wire::Node(node)) = f.lookup(&call.name.text) {
+            return self.call_passed(f, &node, callee, given, place);
+        }
         let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty() {
             if let Some(wire) = self.special(f, call, &given, place) {
@@ -60,10 +85,10 @@ impl<'a> Checker<'a> {
             return if sampled {
                 self.no_view(f, call, &given[0])
             } else {
-                self.no_callable(f, call, &given)
+                self.no_callable(f, callee, &given)
             };
         }
-        self.call_one_of(f, &candidates, call, given, place)
+        self.call_one_of(f, &candidates, callee, given, place)
     }
 
     /// `sample` of something that has no texels of its own.
@@ -103,7 +128,8 @@ impl<'a> Checker<'a> {
             return self
                 .report(f, crate::diagnostic::imports::no_such_item(at, alias, &call.name.text, near));
         }
-        self.call_one_of(f, &candidates, call, given, place)
+        let callee = self.callee(f, call);
+        self.call_one_of(f, &candidates, callee, given, place)
     }
 
     fn given(&mut self, f: &mut Frame<'a>, arguments: &'a [Argument]) -> Vec<Given<'a>> {
@@ -111,15 +137,34 @@ impl<'a> Checker<'a> {
             .iter()
             .map(|argument| Given {
                 name: argument.name.as_ref(),
-                wire: self.expr(f, &argument.value),
+                wire: self.argument_wire(f, &argument.value),
                 place: self.place(f, argument.value.span),
-                word: word(&argument.value),
+                expr: Some(&argument.value),
             })
             .collect()
     }
 
+    /// An argument, which unlike other expressions may be a lambda, or a node of another file.
+    fn argument_wire(&mut self, f: &mut Frame<'a>, expr: &'a Expr) -> Wire {
+        if let ExprKind::Lambda { .. } = expr.kind {
+            return Wire::Lambda;
+        }
+        if let ExprKind::Postfix { base, links } = &expr.kind
+            && let [Postfix::Field(name)] = links.as_slice()
+            && let Some(module) = self.alias_of(f, base)
+            && !self.globals[module].contains_key(&name.text)
+        {
+            let callables = self.own_callables(module, &name.text);
+            if let (ExprKind::Name(alias), false) = (&base.kind, callables.is_empty()) {
+                let name = format!("{alias}.{}", name.text);
+                return Wire::Callables(Rc::new(ImportedNodes { name, callables }));
+            }
+        }
+        self.expr(f, expr)
+    }
+
     /// What a name may mean in a file, nearest first.
-    fn callables_of(&self, module: usize, name: &str) -> Vec<Callable> {
+    pub(super) fn callables_of(&self, module: usize, name: &str) -> Vec<Callable> {
         let mut found = Vec::new();
         if module >= self.library.modules().len() {
             found.extend(self.own_callables(module, name));
@@ -168,7 +213,7 @@ impl<'a> Checker<'a> {
         &mut self,
         f: &mut Frame<'a>,
         candidates: &[Callable],
-        call: &'a Call,
+        callee: Callee<'a>,
         given: Vec<Given<'a>>,
         place: Place,
     ) -> Wire {
@@ -187,9 +232,9 @@ impl<'a> Checker<'a> {
             .or_else(|| heads.iter().find(|(_, head)| fits(head, 1)))
             .copied();
         match (chosen, heads.as_slice()) {
-            (Some((callable, head)), _) => self.apply(f, callable, head, call, given, place),
-            (None, [(callable, head)]) => self.apply(f, *callable, *head, call, given, place),
-            (None, _) => self.no_receiver(f, &heads, call, &given, place),
+            (Some((callable, head)), _) => self.apply(f, callable, head, callee.dim, given, place),
+            (None, [(callable, head)]) => self.apply(f, *callable, *head, callee.dim, given, place),
+            (None, _) => self.no_receiver(f, &heads, callee, &given, place),
         }
     }
 
@@ -212,7 +257,7 @@ impl<'a> Checker<'a> {
         &mut self,
         f: &mut Frame<'a>,
         heads: &[(Callable, Head<'a>)],
-        call: &Call,
+        callee: Callee<'a>,
         given: &[Given<'a>],
         place: Place,
     ) -> Wire {
@@ -225,7 +270,7 @@ impl<'a> Checker<'a> {
         let accepted = heads.iter().filter_map(|(_, head)| head.inputs.first());
         let accepted: Vec<String> = accepted.map(|input| format!("`{}`", types::show(&input.ty))).collect();
         let at = first.map_or(place, |given| given.place);
-        self.report(f, sentences::bad_receiver(at, &call.name.text, &found, &accepted))
+        self.report(f, sentences::bad_receiver(at, callee.name, &found, &accepted))
     }
 
     fn apply(
@@ -233,16 +278,16 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         callable: Callable,
         head: Head<'a>,
-        call: &'a Call,
+        dim: Option<&Dim>,
         given: Vec<Given<'a>>,
         place: Place,
     ) -> Wire {
-        let Some(bound) = self.bind_arguments(f, head, call.dim.as_ref(), given, place) else {
+        let Some(bound) = self.bind_arguments(f, head, dim, given, place) else {
             return Wire::Unknown;
         };
         f.builder.set_place(place);
         match callable {
-            Callable::Node(module, item) => self.call_node(f, module, item, bound, place),
+            Callable::Node(module, item) => self.call_node(f, (module, item, None), bound, place),
             Callable::Intrinsic(intrinsic) => {
                 let values: Option<Vec<Value>> = bound.wires.iter().map(as_value).collect();
                 values.map_or(Wire::Unknown, |values| Wire::Value(f.builder.builtin(intrinsic, &values)))
@@ -251,39 +296,18 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn call_node(
+    pub(super) fn call_node(
         &mut self,
         f: &mut Frame<'a>,
-        module: usize,
-        item: usize,
+        (module, item, wire): (usize, usize, Option<String>),
         bound: Bound,
         place: Place,
     ) -> Wire {
-        let mut key = Key {
-            module,
-            item,
-            dims: bound.dims.iter().map(|(_, width)| *width).collect(),
-            arguments: vec![],
-        };
-        let mut arguments = Vec::new();
-        for wire in bound.wires {
-            let argument = match wire {
-                Wire::Value(value) => match f.builder.as_constant(value) {
-                    Some(constant) => ArgumentKey::Constant(constant),
-                    None => {
-                        arguments.push(value);
-                        ArgumentKey::Value(f.builder.ty(value))
-                    }
-                },
-                Wire::Resource(resource) => {
-                    arguments.extend(resource.views.iter().map(|(_, view)| *view));
-                    ArgumentKey::Resource(resource.kind, resource.constants.clone())
-                }
-                Wire::Word(word, _) => ArgumentKey::Word(word),
-                _ => ArgumentKey::None,
-            };
-            key.arguments.push(argument);
-        }
+        let (arguments, values): (Vec<ArgumentKey>, Vec<Vec<Value>>) =
+            bound.wires.into_iter().map(|wire| key_of(f, wire)).unzip();
+        let values = values.concat();
+        let dims = bound.dims.iter().map(|(_, width)| *width).collect();
+        let key = Key { module, item, dims, arguments, wire };
         match self.made.get(&key) {
             None => {
                 f.waiting.push((key, place));
@@ -293,29 +317,55 @@ impl<'a> Checker<'a> {
                 f.failed = true;
                 Wire::Unknown
             }
-            Some(Outcome::Made(id)) => self.outputs(f, *id, arguments),
+            Some(Outcome::Made(id)) => {
+                let id = *id;
+                let results = self.results(f, id, values);
+                match key.wire {
+                    None => self.node_outputs(module, item, results),
+                    Some(_) => self.wire_outputs(id, results),
+                }
+            }
         }
     }
 
-    fn outputs(&mut self, f: &mut Frame<'a>, id: crate::graph::FunctionId, arguments: Vec<Value>) -> Wire {
-        let callee = &self.functions[id.0 as usize];
-        let known: Vec<_> = callee.outputs.iter().map(|(_, value)| callee.operation(*value)).collect();
-        let outputs = if known.iter().all(|operation| matches!(operation, Operation::Constant(_))) {
-            known
-                .iter()
-                .filter_map(
-                    |op| if let Operation::Constant(c) = op { Some(f.builder.constant(*c)) } else { None },
-                )
-                .collect()
-        } else {
-            f.builder.call(id, callee, arguments)
-        };
-        let names = callee.outputs.iter().map(|(slot, _)| slot.name.clone());
-        let mut record: Vec<(String, Wire)> = names.zip(outputs.into_iter().map(Wire::Value)).collect();
+    /// The outputs of a node from the values of its function.
+    fn node_outputs(&self, module: usize, item: usize, results: Vec<Value>) -> Wire {
+        let outputs = self.node(module, item).map_or(&[][..], |node| &node.outputs);
+        let mut results = results.into_iter();
+        let mut record: Vec<(String, Wire)> = outputs
+            .iter()
+            .map(|output| {
+                let wire = match types::matrix(&output.ty) {
+                    Some(size) => Wire::Matrix(results.by_ref().take(usize::from(size)).collect()),
+                    None => results.next().map_or(Wire::Unknown, Wire::Value),
+                };
+                (output.name.text.clone(), wire)
+            })
+            .collect();
         if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
     }
 
-    fn no_callable(&mut self, f: &mut Frame<'a>, call: &Call, given: &[Given<'a>]) -> Wire {
+    /// The outputs of a function that gives a wire of a node.
+    fn wire_outputs(&self, id: FunctionId, results: Vec<Value>) -> Wire {
+        let slots = self.functions[id.0 as usize].outputs.iter().map(|(slot, _)| slot.name.clone());
+        let mut record: Vec<(String, Wire)> = slots.zip(results.into_iter().map(Wire::Value)).collect();
+        if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
+    }
+
+    /// Calls a function; its outputs, as numbers where they are known.
+    pub(super) fn results(&mut self, f: &mut Frame<'a>, id: FunctionId, arguments: Vec<Value>) -> Vec<Value> {
+        let callee = &self.functions[id.0 as usize];
+        let known = callee.outputs.iter().map(|(_, value)| match callee.operation(*value) {
+            Operation::Constant(constant) => Some(*constant),
+            _ => None,
+        });
+        match known.collect::<Option<Vec<Constant>>>() {
+            Some(known) => known.into_iter().map(|constant| f.builder.constant(constant)).collect(),
+            None => f.builder.call(id, callee, arguments),
+        }
+    }
+
+    fn no_callable(&mut self, f: &mut Frame<'a>, callee: Callee<'a>, given: &[Given<'a>]) -> Wire {
         if given.iter().any(|given| matches!(given.wire, Wire::Word(..))) {
             // A word may be a choice of whatever was meant.
             let names = self.library.callable_names();
@@ -323,8 +373,7 @@ impl<'a> Checker<'a> {
                 names.iter().flat_map(|name| self.library.callables(name)).copied().collect();
             self.words(f, &all, given);
         }
-        let place = self.place(f, call.name.span);
-        let name = call.name.text.as_str();
+        let Callee { name, place, .. } = callee;
         if self.is_value(f, name) {
             if f.scopes
                 .iter()
@@ -348,10 +397,29 @@ impl<'a> Checker<'a> {
 const SPECIAL: &[&str] =
     &["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "dx", "dy", "sample", "texel"];
 
-fn word(expr: &Expr) -> Option<&str> {
-    match &expr.kind {
-        ExprKind::Name(name) => Some(name),
-        _ => None,
+/// What of an argument is part of the function, and the values that it is called with.
+fn key_of(f: &Frame<'_>, wire: Wire) -> (ArgumentKey, Vec<Value>) {
+    let number = |value: Value| match f.builder.as_constant(value) {
+        Some(constant) => (ArgumentKey::Constant(constant), None),
+        None => (ArgumentKey::Value(f.builder.ty(value)), Some(value)),
+    };
+    match wire {
+        Wire::Value(value) => {
+            let (key, value) = number(value);
+            (key, value.into_iter().collect())
+        }
+        Wire::Matrix(columns) => {
+            let (keys, values): (Vec<ArgumentKey>, Vec<Option<Value>>) =
+                columns.iter().map(|column| number(*column)).unzip();
+            (ArgumentKey::Matrix(keys), values.into_iter().flatten().collect())
+        }
+        Wire::Resource(resource) => {
+            let views = resource.views.iter().map(|(_, view)| *view).collect();
+            (ArgumentKey::Resource(resource.kind, resource.constants.clone()), views)
+        }
+        Wire::Node(node) => (ArgumentKey::Node(node.function), node.captures.clone()),
+        Wire::Word(word, _) => (ArgumentKey::Word(word), Vec::new()),
+        _ => (ArgumentKey::None, Vec::new()),
     }
 }
 
@@ -373,6 +441,12 @@ fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, given: &Given
             let width =
                 types::fixed_width(&input.ty).is_none_or(|width| ty.width() == 1 || ty.width() == width);
             width && ty.scalar().is_some_and(|found| types::widens(found, wanted))
+        }
+        (_, None) if matches!(input.ty.kind, TypeKind::Node { .. }) => {
+            given.expr.is_some() || matches!(given.wire, Wire::Node(_))
+        }
+        (Wire::Matrix(columns), None) => {
+            types::matrix(&input.ty).is_some_and(|size| usize::from(size) == columns.len())
         }
         (Wire::Resource(resource), None) => types::kind_of(&input.ty) == Some(resource.kind),
         (Wire::Word(..) | Wire::None | Wire::Text(_) | Wire::List(_), None) => true,

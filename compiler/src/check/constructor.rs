@@ -3,9 +3,9 @@
 use super::arguments::{Bound, Head};
 use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
-use crate::diagnostic::{Diagnostic, Place, constructors};
-use crate::graph::{Constant, ResourceView, Scalar, Type, ViewId};
-use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource};
+use crate::diagnostic::{Diagnostic, Place, constructors, nodes};
+use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, ViewId};
+use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, made_by};
 use std::rc::Rc;
 use texgraph_grammar::syntax::Input;
 
@@ -26,15 +26,34 @@ impl<'a> Checker<'a> {
                 Err(diagnostic) => return self.report(f, diagnostic),
             }
         }
+        let bake = match bound
+            .wires
+            .iter()
+            .find_map(|wire| if let Wire::Node(node) = wire { Some(node) } else { None })
+        {
+            Some(node) if !node.captures.is_empty() => {
+                let names = self.captured_names(f, &node.captures);
+                return self.report(f, nodes::bake_reads(place, &names));
+            }
+            node => node.map(|node| node.function),
+        };
         let file = self.modules[f.module].path.clone();
         match (KINDS[kind].make)(&Arguments { place, file, values }) {
-            Ok(made) => self.resource(f, kind, made, place),
+            Ok(made) => self.resource(f, made_by(kind), made, bake, place),
             Err(diagnostic) => self.report(f, diagnostic),
         }
     }
 
-    fn resource(&mut self, f: &mut Frame<'a>, kind: usize, made: Made, place: Place) -> Wire {
-        let known = self.resources.iter().position(|r| r.place == place && r.recipe == made.recipe);
+    fn resource(
+        &mut self,
+        f: &mut Frame<'a>,
+        kind: usize,
+        made: Made,
+        bake: Option<FunctionId>,
+        place: Place,
+    ) -> Wire {
+        let same = |r: &Resource| r.place == place && r.recipe == made.recipe && r.bake == bake;
+        let known = self.resources.iter().position(same);
         let resource = known.unwrap_or_else(|| {
             let resource = self.resources.len();
             let mut views = Vec::new();
@@ -51,6 +70,7 @@ impl<'a> Checker<'a> {
                 place,
                 recipe: made.recipe,
                 sampler: made.sampler,
+                bake,
             });
             resource
         });
@@ -100,6 +120,7 @@ fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<A
             Some(constant) => Ok(Argument::Number(constant)),
             None => Err(constructors::not_known(place, name)),
         },
+        Wire::Node(_) => Ok(Argument::Node),
         Wire::List(items) if crate::check::types::show(&input.ty) == "texts" => texts(name, items, place),
         Wire::List(items) => rows(f, name, items, place),
         _ => Err(constructors::wrong_argument(place, name, "a constant")),

@@ -5,7 +5,7 @@ use super::types::{self, Declared};
 use super::wire::Wire;
 use super::{Checker, Frame, Step, Target};
 use crate::diagnostic::Place;
-use crate::graph::{Builder, Type};
+use crate::graph::Builder;
 use texgraph_grammar::syntax::{Input, Node};
 
 impl<'a> Checker<'a> {
@@ -40,8 +40,8 @@ impl<'a> Checker<'a> {
 
     fn open_wire(&self, f: &mut Frame<'a>, input: &Input) -> Wire {
         match types::resolve(&input.ty, &f.dims, self.modules[f.module].file) {
-            Ok(Declared::Vector(scalar, width)) => {
-                Wire::Value(f.builder.input(input.name.text.clone(), Type::Vector(scalar, width)))
+            Ok(declared @ (Declared::Vector(..) | Declared::Matrix(_))) => {
+                super::node::open_input(&mut f.builder, &input.name.text, &declared)
             }
             // What else an input may be has no operators; calls that read it are checked there.
             _ => Wire::Unknown,
@@ -51,8 +51,7 @@ impl<'a> Checker<'a> {
     pub(super) fn check_default(&mut self, f: &mut Frame<'a>, input: &'a Input, wire: Wire, place: Place) {
         // A wrong type is reported at the head.
         if let Ok(declared) = types::resolve(&input.ty, &f.dims, self.modules[f.module].file) {
-            let word = None;
-            let given = super::arguments::Given { name: None, wire, place, word };
+            let given = super::arguments::Given { name: None, wire, place, expr: input.default.as_ref() };
             self.coerce(f, &input.name.text, &declared, given);
         }
         let wire = self.open_wire(f, input);

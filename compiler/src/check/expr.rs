@@ -4,7 +4,7 @@ use super::constructor::view_field;
 use super::types;
 use super::wire::Wire;
 use super::{Checker, Frame};
-use crate::diagnostic::{Place, imports, names, rates, types as errors, unsupported};
+use crate::diagnostic::{Place, folds, imports, names, rates, types as errors};
 use crate::graph::{Constant, Scalar, Type, Value};
 use crate::intrinsic::{COMPONENT, Intrinsic, NEGATE, NEGATE_INT, NOT};
 use crate::library::Callable;
@@ -43,7 +43,7 @@ impl<'a> Checker<'a> {
                 let items = items.iter().map(|item| (self.expr(f, item), self.place(f, item.span))).collect();
                 Wire::List(Rc::new(items))
             }
-            ExprKind::Lambda { .. } => self.report(f, unsupported::not_yet(place, "lambdas")),
+            ExprKind::Lambda { .. } => Wire::Lambda,
             ExprKind::Fold(fold) => self.fold(f, fold, e.span),
         }
     }
@@ -51,8 +51,8 @@ impl<'a> Checker<'a> {
     /// A name: a wire of the function, or a value of the file. One that is neither may still be a
     /// choice; who needs a value reports it.
     fn name(&mut self, f: &mut Frame<'a>, name: &str, place: Place) -> Wire {
-        if let Some(wire) = f.scopes.iter().rev().find_map(|scope| scope.get(name)) {
-            return wire.clone();
+        if let Some(wire) = f.lookup(name) {
+            return wire;
         }
         if f.bound.contains(name) {
             // Bound in this body but not made: part of a ring, or wrong; both are reported.
@@ -166,7 +166,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn alias_of(&self, f: &Frame<'a>, base: &Expr) -> Option<usize> {
+    pub(super) fn alias_of(&self, f: &Frame<'a>, base: &Expr) -> Option<usize> {
         match &base.kind {
             ExprKind::Name(name) if !self.is_value(f, name) => self.alias(f.module, name),
             _ => None,
@@ -174,7 +174,7 @@ impl<'a> Checker<'a> {
     }
 
     fn imported_value(&mut self, f: &mut Frame<'a>, alias: &str, module: usize, name: &Name) -> Wire {
-        if let Some(global) = self.globals[module].get(&name.text).copied() {
+        if let Some(global) = self.globals[module].get(&name.text).cloned() {
             return self.global_wire(f, global);
         }
         let place = self.place(f, name.span);
@@ -250,11 +250,22 @@ impl<'a> Checker<'a> {
         let place = self.place(f, span);
         let at = self.place(f, index.span);
         let index = self.expr(f, index);
-        if let Wire::List(_) = wire {
-            return self.report(f, unsupported::not_yet(place, "constant tables"));
+        let table = match &wire {
+            Wire::List(items) => match self.table(f, items, base) {
+                Some(table) => Some(table),
+                None => return Wire::Unknown,
+            },
+            _ => None,
+        };
+        let Some(index) = self.coerce_value(f, &index, Scalar::Int, 1, at) else { return Wire::Unknown };
+        if let Some(table) = table {
+            f.builder.set_place(place);
+            return Wire::Value(lookup(f, table, index));
+        }
+        if let Wire::Matrix(columns) = &wire {
+            return self.column(f, columns, index);
         }
         let Some(vector) = self.value(f, &wire, base) else { return Wire::Unknown };
-        let Some(index) = self.coerce_value(f, &index, Scalar::Int, 1, at) else { return Wire::Unknown };
         f.builder.set_place(place);
         let width = f.builder.ty(vector).width();
         if let Some(known) = f.builder.as_constant(index) {
@@ -280,6 +291,12 @@ impl<'a> Checker<'a> {
         }
         let wire = self.expr(f, operand);
         let place = self.place(f, operand.span);
+        if let Wire::Matrix(columns) = &wire
+            && operators.iter().all(|(operator, _)| *operator == UnaryOperator::Negate)
+        {
+            let odd = operators.len() % 2 == 1;
+            return if odd { super::matrix::negated(f, columns) } else { wire };
+        }
         match self.value(f, &wire, place) {
             Some(value) => self.prefix(f, operators, value, span),
             None => Wire::Unknown,
@@ -312,21 +329,31 @@ impl<'a> Checker<'a> {
 
     fn chain(&mut self, f: &mut Frame<'a>, first: &'a Expr, links: &'a [ChainLink]) -> Wire {
         let start = self.place(f, first.span);
-        let left = self.expr(f, first);
-        let mut left = self.value(f, &left, start);
+        let mut left = self.operand(f, first);
         let mut place = start;
         for link in links {
             let right_place = self.place(f, link.operand.span);
-            let right = self.expr(f, &link.operand);
-            let right = self.value(f, &right, right_place);
+            let right = self.operand(f, &link.operand);
             let whole = Place { span: place.span.to(link.operand.span), ..place };
-            left = match (left, right) {
-                (Some(a), Some(b)) => self.operator(f, link, (a, place), (b, right_place), whole),
-                _ => None,
+            left = match (&left, &right) {
+                (Wire::Unknown, _) | (_, Wire::Unknown) => Wire::Unknown,
+                (Wire::Value(a), Wire::Value(b)) => self
+                    .operator(f, link, (*a, place), (*b, right_place), whole)
+                    .map_or(Wire::Unknown, Wire::Value),
+                (a, b) => self.matrix_operator(f, link, (a, place), (b, right_place), whole),
             };
             place = whole;
         }
-        left.map_or(Wire::Unknown, Wire::Value)
+        left
+    }
+
+    /// An operand: a value or a matrix; anything else is reported.
+    fn operand(&mut self, f: &mut Frame<'a>, operand: &'a Expr) -> Wire {
+        let place = self.place(f, operand.span);
+        match self.expr(f, operand) {
+            wire @ Wire::Matrix(_) => wire,
+            wire => self.value(f, &wire, place).map_or(Wire::Unknown, Wire::Value),
+        }
     }
 
     /// An operator: the first overload that takes both operands without narrowing.
@@ -438,12 +465,14 @@ impl<'a> Checker<'a> {
         if let ([], [(only, _)]) = (conditions, arms.as_slice()) {
             return only.clone();
         }
-        if arms
-            .iter()
-            .any(|(wire, _)| matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::Text(_) | Wire::None))
-        {
+        if arms.iter().any(|(wire, _)| {
+            matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::Text(_) | Wire::None | Wire::Node(_))
+        }) {
             let place = conditions.first().map_or(Place::default(), |(_, place)| *place);
             return self.report(f, rates::choice_not_constant(place));
+        }
+        if arms.iter().any(|(wire, _)| matches!(wire, Wire::Matrix(_))) {
+            return self.select_columns(f, conditions, &arms);
         }
         let values: Vec<Option<Value>> =
             arms.iter().map(|(wire, place)| self.value(f, wire, *place)).collect();
@@ -456,6 +485,59 @@ impl<'a> Checker<'a> {
             result = f.builder.select(*condition, value, result);
         }
         Wire::Value(result)
+    }
+
+    /// A choice between matrices: column by column.
+    fn select_columns(
+        &mut self,
+        f: &mut Frame<'a>,
+        conditions: &[(Option<Value>, Place)],
+        arms: &[(Wire, Place)],
+    ) -> Wire {
+        let size = arms.iter().find_map(|(wire, _)| match wire {
+            Wire::Matrix(columns) => Some(columns.len()),
+            _ => None,
+        });
+        let size = size.unwrap_or(2) as u8;
+        let matrices = arms.iter().map(|(wire, place)| self.coerce_matrix(f, wire, size, *place));
+        let matrices: Vec<Option<Rc<[Value]>>> = matrices.collect();
+        let Some(matrices) = matrices.into_iter().collect::<Option<Vec<_>>>() else { return Wire::Unknown };
+        let column = |i: usize| {
+            let mut values = matrices.iter().rev().map(|matrix| matrix[i]);
+            let mut result = values.next()?;
+            for ((condition, _), value) in conditions.iter().rev().zip(values) {
+                result = f.builder.select((*condition)?, value, result);
+            }
+            Some(result)
+        };
+        let columns: Option<Vec<Value>> = (0..usize::from(size)).map(column).collect();
+        columns.map_or(Wire::Unknown, |columns| Wire::Matrix(columns.into()))
+    }
+
+    /// A list as a table of constants of one type.
+    fn table(&mut self, f: &mut Frame<'a>, items: &[(Wire, Place)], place: Place) -> Option<Vec<Constant>> {
+        if items.is_empty() {
+            self.report(f, folds::empty_table(place));
+            return None;
+        }
+        if items.len() > crate::diagnostic::limits::MAX_TABLE {
+            self.report(f, folds::table_too_long(place, items.len()));
+            return None;
+        }
+        let values: Vec<Option<Value>> =
+            items.iter().map(|(wire, place)| self.value(f, wire, *place)).collect();
+        let values = self.common_type(f, values.into_iter().collect::<Option<_>>()?, items)?;
+        let mut entries = Vec::new();
+        for (value, (_, at)) in values.iter().zip(items) {
+            match f.builder.as_constant(*value) {
+                Some(entry) => entries.push(entry),
+                None => {
+                    self.report(f, folds::entry_not_constant(*at));
+                    return None;
+                }
+            }
+        }
+        Some(entries)
     }
 
     /// Arms widen to a common type.
@@ -486,6 +568,14 @@ impl<'a> Checker<'a> {
             common.push(self.coerce_value(f, &Wire::Value(value), scalar, width, *place)?);
         }
         Some(common)
+    }
+}
+
+/// An entry of a table, the index clamped.
+fn lookup(f: &mut Frame<'_>, table: Vec<Constant>, index: Value) -> Value {
+    match table.as_slice() {
+        [only] => f.builder.constant(*only),
+        _ => f.builder.lookup(table.into(), index),
     }
 }
 

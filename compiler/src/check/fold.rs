@@ -1,101 +1,197 @@
-//! Folds. For now only those whose steps are all known: their body is written out step by step.
+//! Folds: the body becomes a function of the accumulators, the step and what it reads from outside.
+//!
+//! A fold over known numbers is worth a number, found here; any other stays in the graph. Which of
+//! those are written out is decided later (`pass::inline`).
 
 use super::order::{self, Free};
+use super::range::Steps;
 use super::wire::Wire;
 use super::{Checker, Frame, types};
-use crate::diagnostic::{limits, names, types as errors, unsupported};
-use crate::graph::{Constant, Scalar, Value};
+use crate::diagnostic::{Place, folds, limits, names, types as errors};
+use crate::graph::evaluate::{Stopped, evaluate};
+use crate::graph::{self, Builder, Function, FunctionId, Scalar, Type, Value};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Fold, Name, Pattern, Span, Statement};
+use texgraph_grammar::syntax::{Expr, Fold, Name, Pattern, Span, Statement};
 
-/// Steps that are written out at most.
-const MAX_STEPS: i64 = 256;
+/// The body or condition of a fold in the making, with what it reads of the function around it.
+struct Part {
+    builder: Builder,
+    captures: Vec<Value>,
+}
 
 impl<'a> Checker<'a> {
     pub(super) fn fold(&mut self, f: &mut Frame<'a>, fold: &'a Fold, span: Span) -> Wire {
         let place = self.place(f, span);
-        let mut accumulators: Vec<(&'a str, Value)> = Vec::new();
-        for (name, start) in &fold.accumulators {
-            let at = self.place(f, start.span);
-            let wire = self.expr(f, start);
-            let Some(value) = self.value(f, &wire, at) else { return Wire::Unknown };
-            accumulators.push((&name.text, value));
+        let starts = self.starts(f, fold);
+        let steps = self.steps(f, fold, place);
+        let order = self.fold_order(f, fold);
+        let (Some(starts), Some(steps), Some(order)) = (starts, steps, order) else { return Wire::Unknown };
+        let body = self.fold_body(f, fold, &order, &starts, &steps);
+        let captures = body.as_ref().map_or(&[][..], |body| &body.captures);
+        let condition = fold
+            .condition
+            .as_ref()
+            .map(|condition| self.fold_condition(f, fold, condition, &starts, captures));
+        if !f.waiting.is_empty() {
+            return Wire::Unknown;
         }
-        let Some((first, last)) = self.steps(f, fold) else { return Wire::Unknown };
-        if last - first > MAX_STEPS && fold.condition.is_none() {
-            return self.report(f, limits::too_many_steps(place, last - first));
-        }
-        let Some(order) = self.fold_order(f, fold) else { return Wire::Unknown };
-        for (taken, step) in (first..last).enumerate() {
-            match self.goes_on(f, fold, &accumulators) {
-                None => return Wire::Unknown,
-                Some(false) => break,
-                Some(true) if taken as i64 >= MAX_STEPS => {
-                    return self.report(f, limits::too_many_steps(place, last - first));
+        let Some(mut body) = body else { return Wire::Unknown };
+        let condition = match condition {
+            Some(Some(condition)) => {
+                // Both take what either reads.
+                let function = condition.builder.function();
+                let first = function.inputs.len() - condition.captures.len();
+                for slot in &function.inputs[first + body.captures.len()..] {
+                    body.builder.input(slot.name.clone(), slot.ty);
                 }
-                Some(true) => {}
+                body.captures = condition.captures;
+                Some(self.intern(condition.builder.finish()))
             }
-            match self.fold_step(f, fold, &order, &accumulators, step as i32) {
-                Some(next) => accumulators = next,
-                None => return Wire::Unknown,
-            }
+            Some(None) => return Wire::Unknown,
+            None => None,
+        };
+        let inner = self.intern(body.builder.finish());
+        if !self.nest_fits(f, inner, steps.most, place) {
+            return Wire::Unknown;
         }
-        let mut record: Vec<(String, Wire)> =
-            accumulators.iter().map(|(name, value)| ((*name).to_owned(), Wire::Value(*value))).collect();
+        f.builder.set_place(place);
+        let captures = body.captures;
+        let made =
+            graph::Fold { body: inner, condition, starts, steps: steps.steps, most: steps.most, captures };
+        let Some(results) = self.fold_results(f, made, place) else { return Wire::Unknown };
+        let names = fold.accumulators.iter().map(|(name, _)| name.text.clone());
+        let mut record: Vec<(String, Wire)> = names.zip(results.into_iter().map(Wire::Value)).collect();
         if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
     }
 
-    /// The first step and the one behind the last.
-    fn steps(&mut self, f: &mut Frame<'a>, fold: &'a Fold) -> Option<(i64, i64)> {
-        let mut ends = Vec::new();
-        for end in [&*fold.range.start, &*fold.range.end] {
-            let at = self.place(f, end.span);
-            let wire = self.expr(f, end);
-            let value = self.value(f, &wire, at)?;
-            if f.builder.ty(value).width() > 1 {
-                self.report(f, unsupported::not_yet(at, "a fold over a box"));
-                return None;
-            }
-            let value = self.coerce_value(f, &Wire::Value(value), Scalar::Int, 1, at)?;
-            let Some(known) = f.builder.as_constant(value) else {
-                self.report(f, unsupported::not_yet(at, "a fold with a computed range"));
-                return None;
-            };
-            ends.push(i64::from(known.int(0)));
-        }
-        let last = ends[1] + i64::from(fold.range.inclusive);
-        let last = match &fold.max {
-            Some(max) => {
-                let at = self.place(f, max.span);
-                let wire = self.expr(f, max);
-                let value = self.coerce_value(f, &wire, Scalar::Int, 1, at)?;
-                let most = f.builder.as_constant(value).map_or(0, |c| i64::from(c.int(0)));
-                last.min(ends[0] + most)
-            }
-            None => last,
-        };
-        Some((ends[0], last.max(ends[0])))
+    fn starts(&mut self, f: &mut Frame<'a>, fold: &'a Fold) -> Option<Vec<Value>> {
+        let starts = fold.accumulators.iter().map(|(_, start)| {
+            let at = self.place(f, start.span);
+            let wire = self.expr(f, start);
+            self.value(f, &wire, at)
+        });
+        starts.collect::<Vec<_>>().into_iter().collect()
     }
 
-    /// Whether the next step is taken; None when that is wrong or not known.
-    fn goes_on(
+    /// The function of one step.
+    fn fold_body(
         &mut self,
         f: &mut Frame<'a>,
         fold: &'a Fold,
-        accumulators: &[(&'a str, Value)],
-    ) -> Option<bool> {
-        let Some(condition) = &fold.condition else { return Some(true) };
-        let at = self.place(f, condition.span);
-        f.scopes.push(scope(accumulators));
-        let wire = self.expr(f, condition);
-        f.scopes.pop();
-        let value = self.coerce_value(f, &wire, Scalar::Bool, 1, at)?;
-        let known = f.builder.as_constant(value);
-        if known.is_none() {
-            self.report(f, unsupported::not_yet(at, "a fold with a computed `while`"));
+        order: &[&'a Statement],
+        starts: &[Value],
+        steps: &Steps,
+    ) -> Option<Part> {
+        let types = starts.iter().map(|start| f.builder.ty(*start)).collect::<Vec<Type>>();
+        f.enter(&format!("{}_step", f.current));
+        let accumulators = accumulators(f, fold, &types);
+        let step = f.builder.input(format!("{}_step", fold.variable.text), Type::INT);
+        let at = steps.place_of(f, step);
+        f.builder.name(at, &fold.variable.text);
+        f.scopes[f.base].insert(&fold.variable.text, Wire::Value(at));
+        let mut next = accumulators;
+        let mut fine = true;
+        for statement in order {
+            fine &= self.fold_statement(f, fold, statement, &mut next);
         }
-        known.map(|known| known.bool(0))
+        for (value, (name, _)) in next.iter().zip(&fold.accumulators) {
+            f.builder.output(name.text.clone(), *value);
+        }
+        let (builder, captures) = f.leave();
+        fine.then_some(Part { builder, captures })
+    }
+
+    fn fold_statement(
+        &mut self,
+        f: &mut Frame<'a>,
+        fold: &'a Fold,
+        statement: &'a Statement,
+        next: &mut [Value],
+    ) -> bool {
+        let wire = self.expr(f, order::value_of(statement));
+        let known = !matches!(wire, Wire::Unknown);
+        match statement {
+            Statement::Let { pattern: Pattern::Name(name), .. } => self.bind(f, name, wire),
+            Statement::Let { pattern: Pattern::Record(names, span), .. } => {
+                let place = self.place(f, *span);
+                self.take_apart(f, names, wire, place);
+            }
+            Statement::Assign { name, value } => {
+                let place = self.place(f, value.span);
+                return self.advance(f, fold, next, name, &wire, place) && known;
+            }
+        }
+        known
+    }
+
+    /// The function that tells whether the next step is taken. It takes the body's captures before
+    /// its own.
+    fn fold_condition(
+        &mut self,
+        f: &mut Frame<'a>,
+        fold: &'a Fold,
+        condition: &'a Expr,
+        starts: &[Value],
+        captures: &[Value],
+    ) -> Option<Part> {
+        let at = self.place(f, condition.span);
+        let types = starts.iter().map(|start| f.builder.ty(*start)).collect::<Vec<Type>>();
+        f.enter(&format!("{}_goes_on", f.current));
+        accumulators(f, fold, &types);
+        let level = f.layers.len() - 1;
+        for capture in captures {
+            f.capture(level, *capture);
+        }
+        let wire = self.expr(f, condition);
+        let holds = self.coerce_value(f, &wire, Scalar::Bool, 1, at);
+        if let Some(holds) = holds {
+            f.builder.output("goes_on", holds);
+        }
+        let (builder, captures) = f.leave();
+        holds.map(|_| Part { builder, captures })
+    }
+
+    /// Whether folds inside each other stay within the bound; if not, that is reported.
+    fn nest_fits(&mut self, f: &mut Frame<'a>, body: FunctionId, most: u32, place: Place) -> bool {
+        let inner = self.function_steps.get(body.0 as usize).copied().unwrap_or(1);
+        let steps = u64::from(most).saturating_mul(inner);
+        if steps > u64::from(limits::MAX_STEPS) {
+            let name = f.function_name();
+            self.report(f, folds::too_many_steps(place, &name, steps));
+            return false;
+        }
+        true
+    }
+
+    /// The accumulators after the last step: numbers where all is known.
+    fn fold_results(&mut self, f: &mut Frame<'a>, fold: graph::Fold, place: Place) -> Option<Vec<Value>> {
+        let mut known = true;
+        fold.for_operands(|value| known &= f.builder.as_constant(value).is_some());
+        if !known {
+            return Some(f.builder.fold(fold));
+        }
+        let mut alone = Builder::new("fold");
+        let inside = fold.map_operands(|value| match f.builder.as_constant(value) {
+            Some(constant) => alone.constant(constant),
+            None => value,
+        });
+        for (i, value) in alone.fold(inside).into_iter().enumerate() {
+            alone.output(format!("o{i}"), value);
+        }
+        self.functions.push(alone.finish());
+        let id = FunctionId(self.functions.len() as u32 - 1);
+        let worth = evaluate(&self.functions, id, &[], &mut self.budget);
+        self.functions.pop();
+        match worth {
+            Ok(numbers) => Some(numbers.into_iter().map(|number| f.builder.constant(number)).collect()),
+            Err(Stopped::NotConstant) => Some(f.builder.fold(fold)),
+            Err(Stopped::Budget) => {
+                let name = f.function_name();
+                self.report(f, limits::too_much_evaluation(place, &name));
+                None
+            }
+        }
     }
 
     /// The statements in an order that works; None when there is none, which is reported.
@@ -160,51 +256,17 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// One step: the next values of the accumulators.
-    fn fold_step(
-        &mut self,
-        f: &mut Frame<'a>,
-        fold: &'a Fold,
-        order: &[&'a Statement],
-        accumulators: &[(&'a str, Value)],
-        step: i32,
-    ) -> Option<Vec<(&'a str, Value)>> {
-        let mut names = scope(accumulators);
-        names.insert(&fold.variable.text, Wire::Value(f.builder.constant(Constant::ints(&[step]))));
-        f.scopes.push(names);
-        f.foreign += 1;
-        let mut next = accumulators.to_vec();
-        let mut fine = true;
-        for statement in order {
-            let wire = self.expr(f, order::value_of(statement));
-            fine &= !matches!(wire, Wire::Unknown);
-            match statement {
-                Statement::Let { pattern: Pattern::Name(name), .. } => self.bind(f, name, wire),
-                Statement::Let { pattern: Pattern::Record(names, span), .. } => {
-                    let place = self.place(f, *span);
-                    self.take_apart(f, names, wire, place);
-                }
-                Statement::Assign { name, value } => {
-                    let place = self.place(f, value.span);
-                    fine &= self.advance(f, fold, &mut next, name, &wire, place);
-                }
-            }
-        }
-        f.foreign -= 1;
-        f.scopes.pop();
-        fine.then_some(next)
-    }
-
     fn advance(
         &mut self,
         f: &mut Frame<'a>,
         fold: &Fold,
-        next: &mut [(&'a str, Value)],
+        next: &mut [Value],
         name: &Name,
         wire: &Wire,
-        place: crate::diagnostic::Place,
+        place: Place,
     ) -> bool {
-        let Some((_, slot)) = next.iter_mut().find(|(known, _)| *known == name.text) else { return false };
+        let position = fold.accumulators.iter().position(|(known, _)| known.text == name.text);
+        let Some(slot) = position.and_then(|i| next.get_mut(i)) else { return false };
         let ty = f.builder.ty(*slot);
         let Some(scalar) = ty.scalar() else { return false };
         let Some(value) = self.value(f, wire, place) else { return false };
@@ -225,6 +287,24 @@ impl<'a> Checker<'a> {
     }
 }
 
-fn scope<'a>(accumulators: &[(&'a str, Value)]) -> FxHashMap<&'a str, Wire> {
-    accumulators.iter().map(|(name, value)| (*name, Wire::Value(*value))).collect()
+/// Makes the accumulators inputs of the function being made, and puts them into its scope.
+fn accumulators<'a>(f: &mut Frame<'a>, fold: &'a Fold, types: &[Type]) -> Vec<Value> {
+    let mut values = Vec::new();
+    for ((name, _), ty) in fold.accumulators.iter().zip(types) {
+        let value = f.builder.input(name.text.clone(), *ty);
+        f.scopes[f.base].entry(&name.text).or_insert(Wire::Value(value));
+        values.push(value);
+    }
+    values
+}
+
+/// The most steps that a run of a function takes inside each other: 1 without a fold.
+pub fn steps_of(function: &Function, known: &[u64]) -> u64 {
+    let of = |id: FunctionId| known.get(id.0 as usize).copied().unwrap_or(1);
+    let steps = function.values.iter().map(|operation| match operation {
+        graph::Operation::Call(callee, _) => of(*callee),
+        graph::Operation::Fold(fold) => u64::from(fold.most).saturating_mul(of(fold.body)),
+        _ => 1,
+    });
+    steps.max().unwrap_or(1).max(1)
 }

@@ -3,18 +3,23 @@
 use super::order::Reach;
 use super::wire::Wire;
 use super::{Checker, Frame, Step, Target, types};
-use crate::diagnostic::{Place, imports, names, rates, types as type_errors};
+use crate::diagnostic::{Place, folds, imports, names, rates, types as type_errors};
 use crate::graph::{Builder, Constant, Param, ParamId, Scalar, Type};
 use crate::library::Callable;
 use crate::module::Module;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Item, ItemKind, Name, Node, Range, Span};
 
 /// A value that a file declares.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Global {
     /// A number.
     Constant(Constant),
+    /// A matrix, by its columns.
+    Matrix(Rc<[Constant]>),
+    /// A table of numbers, with where each entry stands.
+    Table(Rc<[(Constant, Place)]>),
     /// Index of a resource.
     Resource(usize),
     /// A param.
@@ -160,9 +165,9 @@ impl<'a> Checker<'a> {
 
     /// A value of a file, or of a file that joins it.
     pub fn global(&self, module: usize, name: &str) -> Option<Global> {
-        self.globals[module].get(name).copied().or_else(|| {
+        self.globals[module].get(name).cloned().or_else(|| {
             let joined = self.modules[module].imports.iter().filter(|import| import.alias.is_none());
-            joined.filter_map(|import| self.globals[import.module].get(name).copied()).next()
+            joined.filter_map(|import| self.globals[import.module].get(name).cloned()).next()
         })
     }
 
@@ -170,6 +175,15 @@ impl<'a> Checker<'a> {
     pub fn global_wire(&self, f: &mut Frame<'a>, global: Global) -> Wire {
         match global {
             Global::Constant(constant) => Wire::Value(f.builder.constant(constant)),
+            Global::Matrix(columns) => {
+                Wire::Matrix(columns.iter().map(|column| f.builder.constant(*column)).collect())
+            }
+            Global::Table(entries) => {
+                let entry = |(constant, place): &(Constant, Place)| {
+                    (Wire::Value(f.builder.constant(*constant)), *place)
+                };
+                Wire::List(Rc::new(entries.iter().map(entry).collect()))
+            }
             Global::Resource(resource) => self.resource_value(f, resource),
             Global::Param(id) => self.param_value(f, id),
             Global::Unknown => Wire::Unknown,
@@ -197,6 +211,18 @@ impl<'a> Checker<'a> {
                 doc.clone_into(&mut self.resources[id].label);
                 Global::Resource(id)
             }),
+            Wire::Matrix(columns) => {
+                let columns: Option<Vec<Constant>> =
+                    columns.iter().map(|column| f.builder.as_constant(*column)).collect();
+                columns.map_or_else(
+                    || {
+                        self.report(f, rates::let_not_constant(place, &name.text));
+                        Global::Unknown
+                    },
+                    |columns| Global::Matrix(columns.into()),
+                )
+            }
+            Wire::List(items) => self.global_table(f, items),
             Wire::Unknown => Global::Unknown,
             Wire::Word(word, at) => {
                 self.unknown_value(f, word, *at);
@@ -211,10 +237,26 @@ impl<'a> Checker<'a> {
         self.declare_value(f, name, global);
     }
 
+    /// A list of numbers, to be indexed.
+    fn global_table(&mut self, f: &mut Frame<'a>, items: &[(Wire, Place)]) -> Global {
+        let mut entries = Vec::new();
+        for (wire, at) in items {
+            let Some(value) = self.value(f, wire, *at) else { return Global::Unknown };
+            match f.builder.as_constant(value) {
+                Some(constant) => entries.push((constant, *at)),
+                None => {
+                    self.report(f, folds::entry_not_constant(*at));
+                    return Global::Unknown;
+                }
+            }
+        }
+        Global::Table(entries.into())
+    }
+
     /// The first declaration of a name holds.
     fn declare_value(&mut self, f: &mut Frame<'a>, name: &'a Name, global: Global) {
         if !f.repeated.contains(&name.span.start) {
-            self.globals[f.module].insert(name.text.clone(), global);
+            self.globals[f.module].insert(name.text.clone(), global.clone());
         }
         let wire = self.global_wire(f, global);
         self.bind(f, name, wire);

@@ -13,8 +13,14 @@ mod default;
 mod expr;
 mod fold;
 mod globals;
+mod layer;
+mod matrix;
+mod node;
 mod order;
+mod passes;
 mod plan;
+mod range;
+mod render;
 mod special;
 mod texture;
 mod types;
@@ -24,7 +30,9 @@ mod wire;
 pub use texture::textures;
 
 use crate::diagnostic::{Diagnostic, Place, limits, names, types as type_errors};
-use crate::graph::{Builder, Function, FunctionId, Graph, Param, ParamId, ResourceView, Type, ViewId};
+use crate::graph::{
+    Builder, Constant, Function, FunctionId, Graph, Param, ParamId, PassGraph, ResourceView, Type, ViewId,
+};
 use crate::library::{Callable, Library};
 use crate::module::Module;
 use crate::resource::{FieldKind, KINDS, Resource};
@@ -33,7 +41,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Postfix, Span};
 use types::{Declared, Dims};
-use wire::{ArgumentKey, Key, ResourceWire, Wire};
+use wire::{ArgumentKey, Key, NodeWire, ResourceWire, Wire};
 
 /// What a made node is.
 #[derive(Clone, Copy)]
@@ -54,6 +62,8 @@ pub struct Checker<'a> {
     made: FxHashMap<Key, Outcome>,
     interned: FxHashMap<u64, Vec<FunctionId>>,
     functions: Vec<Function>,
+    /// For each function the most steps that its folds take inside each other.
+    function_steps: Vec<u64>,
     params: Vec<Param>,
     resources: Vec<Resource>,
     resource_wires: Vec<ResourceFields>,
@@ -63,6 +73,8 @@ pub struct Checker<'a> {
     started: usize,
     /// Values of the functions made.
     values: usize,
+    /// Operations that working out constants may still take.
+    budget: u64,
     /// The limit on values was reported.
     overfull: bool,
     /// The limit on nodes was reported.
@@ -91,6 +103,8 @@ enum Target<'a> {
     Global(&'a Name, &'a str),
     Param(&'a texgraph_grammar::syntax::Item),
     Default(&'a Input),
+    /// A node that is rendered on its own, by its item.
+    Render(usize),
 }
 
 /// A function in the making.
@@ -102,6 +116,10 @@ pub struct Frame<'a> {
     dims: Dims,
     builder: Builder,
     scopes: Vec<FxHashMap<&'a str, Wire>>,
+    /// The functions around the one that the builder makes, the outermost first.
+    layers: Vec<layer::Layer>,
+    /// The first scope of the function that the builder makes.
+    base: usize,
     steps: Vec<Step<'a>>,
     order: Vec<usize>,
     next: usize,
@@ -139,6 +157,7 @@ impl<'a> Checker<'a> {
             made: FxHashMap::default(),
             interned: FxHashMap::default(),
             functions: Vec::new(),
+            function_steps: Vec::new(),
             params: Vec::new(),
             resources: Vec::new(),
             resource_wires: Vec::new(),
@@ -146,6 +165,7 @@ impl<'a> Checker<'a> {
             diagnostics: Vec::new(),
             started: 0,
             values: 0,
+            budget: limits::MAX_EVALUATION,
             overfull: false,
             full: false,
         }
@@ -168,13 +188,29 @@ impl<'a> Checker<'a> {
         self.modules[key.module].tree.items.get(key.item).map_or(String::new(), |item| item.doc.clone())
     }
 
-    /// The graph whose entry is the node of `key`, made before.
-    pub fn into_graph(self, key: &Key) -> Option<Graph> {
+    /// The graph whose entry is the node of `key`, made before, after those of the bakes that it
+    /// reads, each after those that it reads itself. With each bake the resource that it fills.
+    pub fn into_graphs(self, key: &Key) -> Option<Vec<PassGraph>> {
         let Some(Outcome::Made(entry)) = self.made.get(key).copied() else { return None };
-        let mut functions = self.functions;
-        let entry = functions.get(entry.0 as usize)?.clone();
-        functions.push(entry);
-        Some(Graph { functions, params: self.params, resources: self.resources, views: self.views })
+        let mut graph = Graph {
+            functions: self.functions,
+            params: self.params,
+            resources: self.resources,
+            views: self.views,
+        };
+        let bakes = passes::bakes(&graph, entry);
+        let graphs = bakes.iter().filter_map(|resource| {
+            let made = graph.resources.get(*resource as usize)?;
+            let mut bake = passes::rooted(graph.clone(), made.bake?)?;
+            if let Some(function) = bake.functions.last_mut() {
+                function.name.clone_from(&made.name);
+            }
+            Some(PassGraph { graph: bake, bake: Some(*resource) })
+        });
+        let mut graphs: Vec<PassGraph> = graphs.collect();
+        graph = passes::rooted(graph, entry)?;
+        graphs.push(PassGraph { graph, bake: None });
+        Some(graphs)
     }
 
     fn report(&mut self, f: &mut Frame<'a>, diagnostic: Diagnostic) -> Wire {
@@ -242,13 +278,13 @@ impl<'a> Checker<'a> {
     /// A frame with the inputs of its node in scope.
     fn frame(&mut self, node: &'a Node, key: Key, parent: Option<usize>) -> Frame<'a> {
         let mut f = Frame::empty();
-        f.builder = Builder::new(node.name.text.clone());
+        f.builder = Builder::new(render::name_of(node, key.wire.as_deref()));
         f.node = Some(node);
         f.module = key.module;
         f.parent = parent;
         f.dims = node.dims.iter().map(|d| d.text.clone()).zip(key.dims.iter().copied()).collect();
         for (input, argument) in node.inputs.iter().zip(&key.arguments) {
-            let wire = input_wire(&mut f.builder, input, argument);
+            let wire = self.input_wire(&mut f, input, argument);
             f.scopes[0].insert(&input.name.text, wire);
         }
         self.doubt(&mut f, node, key.item);
@@ -263,7 +299,10 @@ impl<'a> Checker<'a> {
             let Step { target, value } = f.steps[*step];
             let (mark, failed, unknown) = (self.diagnostics.len(), f.failed, f.unknown.len());
             f.current = target.name().to_owned();
-            let wire = self.expr(f, value);
+            let wire = match target {
+                Target::Render(item) => self.render_node(f, item),
+                _ => self.expr(f, value),
+            };
             if !f.waiting.is_empty() {
                 // What was said while waiting may be a consequence of it; the step runs again.
                 self.diagnostics.truncate(mark);
@@ -308,6 +347,10 @@ impl<'a> Checker<'a> {
             Target::Global(name, doc) => self.set_global(f, name, doc, wire, place),
             Target::Param(item) => self.set_param(f, item, wire, place),
             Target::Default(input) => self.check_default(f, input, wire, place),
+            Target::Render(_) => {
+                let name = f.key.as_ref().and_then(|key| key.wire.clone());
+                self.output_parts(f, name.as_deref().unwrap_or("value"), wire, place);
+            }
         }
     }
 
@@ -358,6 +401,9 @@ impl<'a> Checker<'a> {
                 Some(Ok(Declared::Vector(scalar, width))) => self
                     .coerce_named(f, &wire, (scalar, width), place, Some(&name.text))
                     .map_or(Wire::Unknown, Wire::Value),
+                Some(Ok(Declared::Matrix(size))) => {
+                    self.coerce_matrix(f, &wire, size, place).map_or(Wire::Unknown, Wire::Matrix)
+                }
                 Some(Ok(_)) => {
                     let ty = declared.map(|o| types::show(&o.ty)).unwrap_or_default();
                     let place = self.place(f, declared.map_or(name.span, |o| o.ty.span));
@@ -372,10 +418,18 @@ impl<'a> Checker<'a> {
     /// Puts a finished node among the functions: the equal one there is already, or a new one.
     fn close(&mut self, mut f: Frame<'a>) {
         let Some(key) = f.key.take() else { return };
-        let node = f.node;
-        for output in node.iter().flat_map(|node| &node.outputs) {
+        if let (Some(node), Some(wire)) = (f.node, &key.wire) {
+            self.output_wire(&mut f, node, wire);
+        }
+        let whole = f.node.filter(|_| key.wire.is_none());
+        for output in whole.iter().flat_map(|node| &node.outputs) {
             match f.scopes[0].get(output.name.text.as_str()) {
                 Some(Wire::Value(value)) => f.builder.output(output.name.text.clone(), *value),
+                Some(Wire::Matrix(columns)) => {
+                    for (i, column) in (0..).zip(columns.iter()) {
+                        f.builder.output(node::column_name(&output.name.text, i), *column);
+                    }
+                }
                 _ => f.failed = true,
             }
         }
@@ -400,8 +454,51 @@ impl<'a> Checker<'a> {
         let id = FunctionId(self.functions.len() as u32);
         self.values += function.values.len();
         alike.push(id);
+        self.function_steps.push(fold::steps_of(&function, &self.function_steps));
         self.functions.push(function);
         id
+    }
+
+    /// What an input of a function is, given what is known of its argument.
+    fn input_wire(&self, f: &mut Frame<'a>, input: &Input, argument: &ArgumentKey) -> Wire {
+        let name = &input.name.text;
+        match argument {
+            ArgumentKey::Constant(constant) => Wire::Value(f.builder.constant(*constant)),
+            ArgumentKey::Value(ty) => Wire::Value(f.builder.input(name.clone(), *ty)),
+            ArgumentKey::Matrix(columns) => {
+                let column = |(i, key): (u8, &ArgumentKey)| match key {
+                    ArgumentKey::Constant(constant) => f.builder.constant(*constant),
+                    ArgumentKey::Value(ty) => f.builder.input(node::column_name(name, i), *ty),
+                    _ => f.builder.constant(Constant::floats(&[0.0])),
+                };
+                Wire::Matrix((0..).zip(columns).map(column).collect())
+            }
+            ArgumentKey::Resource(kind, constants) => {
+                let mut views = Vec::new();
+                for field in KINDS[*kind].fields {
+                    if let FieldKind::View(view) = field.kind {
+                        let full = format!("{name}_{}", field.name);
+                        views.push((field.name, f.builder.input(full, Type::View(view))));
+                    }
+                }
+                Wire::Resource(Rc::new(ResourceWire { kind: *kind, views, constants: constants.clone() }))
+            }
+            ArgumentKey::Node(function) => self.node_input(f, input, *function),
+            ArgumentKey::Word(word) => Wire::Word(word.clone(), Place::default()),
+            ArgumentKey::None => Wire::None,
+        }
+    }
+
+    /// A node that was passed in: its captures are inputs.
+    fn node_input(&self, f: &mut Frame<'a>, input: &Input, function: FunctionId) -> Wire {
+        let declared = types::resolve(&input.ty, &f.dims, self.modules[f.module].file);
+        let Ok(Declared::Node(ty)) = declared else { return Wire::Unknown };
+        let own: usize = ty.inputs.iter().map(|(name, declared)| node::slots(declared, name).len()).sum();
+        let made = &self.functions[function.0 as usize];
+        let captures = made.inputs.iter().skip(own);
+        let captures =
+            captures.map(|slot| f.builder.input(format!("{}_{}", input.name.text, slot.name), slot.ty));
+        Wire::Node(Rc::new(NodeWire { function, captures: captures.collect(), ty }))
     }
 
     /// A place in the file of the frame's module.
@@ -435,6 +532,8 @@ impl<'a> Frame<'a> {
             dims: Vec::new(),
             builder: Builder::default(),
             scopes: vec![FxHashMap::default()],
+            layers: Vec::new(),
+            base: 0,
             steps: Vec::new(),
             order: Vec::new(),
             bound: FxHashSet::default(),
@@ -452,6 +551,13 @@ impl<'a> Frame<'a> {
     }
 }
 
+impl<'a> Frame<'a> {
+    /// The name of the node whose body is being made, whatever stands inside it.
+    fn function_name(&self) -> String {
+        self.builder_of(0).function().name.clone()
+    }
+}
+
 impl<'a> Step<'a> {
     fn names(&self) -> Vec<&'a str> {
         match self.target {
@@ -459,7 +565,7 @@ impl<'a> Step<'a> {
                 vec![&name.text]
             }
             Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
-            Target::Param(_) | Target::Default(_) => vec![self.target.name()],
+            Target::Param(_) | Target::Default(_) | Target::Render(_) => vec![self.target.name()],
         }
     }
 
@@ -474,32 +580,12 @@ impl<'a> Target<'a> {
             Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => &name.text,
             Target::Let(Pattern::Record(names, _)) => names.first().map_or("", |name| &name.text),
             Target::Default(input) => &input.name.text,
+            Target::Render(_) => "value",
             Target::Param(item) => match &item.kind {
                 ItemKind::Param { name, .. } => &name.text,
                 _ => "",
             },
         }
-    }
-}
-
-/// What an input of a function is, given what is known of its argument.
-fn input_wire(builder: &mut Builder, input: &Input, argument: &ArgumentKey) -> Wire {
-    let name = &input.name.text;
-    match argument {
-        ArgumentKey::Constant(constant) => Wire::Value(builder.constant(*constant)),
-        ArgumentKey::Value(ty) => Wire::Value(builder.input(name.clone(), *ty)),
-        ArgumentKey::Resource(kind, constants) => {
-            let mut views = Vec::new();
-            for field in KINDS[*kind].fields {
-                if let FieldKind::View(view) = field.kind {
-                    let full = format!("{name}_{}", field.name);
-                    views.push((field.name, builder.input(full, Type::View(view))));
-                }
-            }
-            Wire::Resource(Rc::new(ResourceWire { kind: *kind, views, constants: constants.clone() }))
-        }
-        ArgumentKey::Word(word) => Wire::Word(word.clone(), Place::default()),
-        ArgumentKey::None => Wire::None,
     }
 }
 

@@ -212,7 +212,8 @@ impl<'a> Reach<'a> {
             }
             for free in self.nodes.get(name).into_iter().flatten() {
                 values.extend(&free.values);
-                queue.extend(&free.calls);
+                // A node may be passed by its bare name.
+                queue.extend(free.calls.iter().chain(&free.values));
             }
         }
         values

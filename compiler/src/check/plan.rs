@@ -135,7 +135,9 @@ impl<'a> Checker<'a> {
             .iter()
             .map(|step| {
                 let free = order::Free::of(step.value);
-                let through = reach.as_ref().map(|reach| reach.values(&free.calls)).unwrap_or_default();
+                // A node may be passed by its bare name.
+                let callees: Vec<&str> = free.calls.iter().chain(&free.values).copied().collect();
+                let through = reach.as_ref().map(|reach| reach.values(&callees)).unwrap_or_default();
                 free.values.iter().chain(&through).filter_map(|name| binder.get(name).copied()).collect()
             })
             .collect();

@@ -27,7 +27,8 @@ impl<'a> Checker<'a> {
             "dx" | "dy" => {
                 Some(self.derivative(f, if name == "dx" { Axis::X } else { Axis::Y }, given, place))
             }
-            "fold_sprites" | "mat2" | "mat3" => Some(self.not_yet(f, place, name)),
+            "mat2" | "mat3" => Some(self.matrix(f, if name == "mat2" { 2 } else { 3 }, given, place)),
+            "fold_sprites" => Some(self.not_yet(f, place, name)),
             _ if LATER.contains(&name) => Some(self.not_yet(f, place, name)),
             _ => None,
         }

@@ -1,14 +1,15 @@
 //! Textures: the entry points, whose inputs and outputs have fixed meanings.
 
 use super::constructor::placeholder;
-use super::types::{self, Declared};
+use super::node::{open_input, slots};
+use super::types::{self, Declared, NodeType};
 use super::wire::{ArgumentKey, Key, Wire};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, limits, names, types as errors, unsupported};
-use crate::graph::{Scalar, Type};
+use crate::graph::{Builder, FunctionId, Scalar, Type, Value};
 use crate::input::INPUTS;
 use crate::module::Module;
-use texgraph_grammar::syntax::{File, ItemKind, Node};
+use texgraph_grammar::syntax::{File, Item, ItemKind, Node};
 
 /// The outputs that hosts know, with their types.
 const OUTPUTS: &[(&str, &[&str])] = &[
@@ -21,6 +22,15 @@ const OUTPUTS: &[(&str, &[&str])] = &[
     ("occlusion", &["float"]),
 ];
 
+fn is_texture(item: &Item) -> bool {
+    matches!(item.kind, ItemKind::Texture { .. })
+}
+
+/// A file as a whole.
+fn whole(module: &Module) -> Place {
+    Place { file: module.file, span: texgraph_grammar::syntax::Span::default() }
+}
+
 /// The names of a file's textures, in source order.
 pub fn textures(file: &File) -> Vec<&str> {
     let nodes = file.items.iter().filter_map(|item| match &item.kind {
@@ -31,32 +41,34 @@ pub fn textures(file: &File) -> Vec<&str> {
 }
 
 impl<'a> Checker<'a> {
-    /// Makes a texture of the main file: the named one, or the first. None when something is wrong.
+    /// Makes a texture of the main file: the named one, or the first. A node's name means the node
+    /// on its own, `name.wire` a wire inside. None when something is wrong.
     pub fn texture(&mut self, name: Option<&str>) -> Option<Key> {
         let main = self.modules.len().checked_sub(1)?;
         let module: &'a Module = &self.modules[main];
-        let known = textures(&module.tree);
-        let all = Place { file: module.file, span: texgraph_grammar::syntax::Span::default() };
-        let wanted = match name {
-            Some(name) if known.contains(&name) => name,
-            Some(name) => {
-                let list = known.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
-                let near = names::nearest(name, known.iter().copied());
-                self.diagnostics.push(limits::no_such_texture(all, name, &list, near));
-                return None;
+        let Some(name) = name else {
+            let first = module.tree.items.iter().position(is_texture);
+            if first.is_none() {
+                self.diagnostics.push(limits::no_texture(whole(module)));
             }
-            None => match known.first() {
-                Some(first) => first,
-                None => {
-                    self.diagnostics.push(limits::no_texture(all));
-                    return None;
-                }
-            },
+            return self.entry(main, first?, None);
         };
-        let item = module.tree.items.iter().position(
-            |item| matches!(&item.kind, ItemKind::Texture { node, .. } if node.name.text == wanted),
-        )?;
-        self.entry(main, item)
+        let (name, wire) =
+            name.split_once('.').map_or((name, None), |(name, wire)| (name, Some(wire.to_owned())));
+        let named = |item: &Item| super::globals::node_of(item).is_some_and(|node| node.name.text == name);
+        let Some(item) = module.tree.items.iter().position(named) else {
+            let known = textures(&module.tree);
+            let list = known.iter().map(|t| format!("`{t}`")).collect::<Vec<_>>().join(", ");
+            let nodes = module.tree.items.iter().filter_map(super::globals::node_of);
+            let near = names::nearest(name, nodes.map(|node| node.name.text.as_str()));
+            self.diagnostics.push(limits::no_such_texture(whole(module), name, &list, near));
+            return None;
+        };
+        if is_texture(&module.tree.items[item]) {
+            self.entry(main, item, wire)
+        } else {
+            self.rendered(main, item, wire)
+        }
     }
 
     /// The name of an item in its head.
@@ -72,7 +84,7 @@ impl<'a> Checker<'a> {
         let main = self.modules.len().saturating_sub(1);
         for (item, declared) in self.modules[main].tree.items.iter().enumerate() {
             if let ItemKind::Texture { .. } = declared.kind {
-                self.entry(main, item);
+                self.entry(main, item, None);
             }
         }
         for module in first..self.modules.len() {
@@ -90,16 +102,27 @@ impl<'a> Checker<'a> {
     }
 
     /// Makes a texture with every input open.
-    fn entry(&mut self, module: usize, item: usize) -> Option<Key> {
+    fn entry(&mut self, module: usize, item: usize, wire: Option<String>) -> Option<Key> {
         let node = self.node(module, item)?;
+        self.budget = limits::MAX_EVALUATION;
         let fine = self.check_signature(module, item, node);
         let key = self.alone(module, item, node, fine)?;
+        let key = match wire {
+            Some(_) if !fine || !self.is_fine() => return None,
+            Some(_) => {
+                let key = Key { wire, ..key };
+                let frame = self.frame(node, key.clone(), None);
+                self.run(frame);
+                key
+            }
+            None => key,
+        };
         (fine && matches!(self.made.get(&key), Some(Outcome::Made(_)))).then_some(key)
     }
 
     /// Makes a node as if nobody called it, to find what is wrong in it: dimensions are 2,
     /// resources are stood in for. None when its head is wrong.
-    fn alone(&mut self, module: usize, item: usize, node: &'a Node, report: bool) -> Option<Key> {
+    pub(super) fn alone(&mut self, module: usize, item: usize, node: &'a Node, report: bool) -> Option<Key> {
         let before = self.diagnostics.len();
         let (key, fine) = self.open_key(module, item, node);
         if !report {
@@ -116,7 +139,11 @@ impl<'a> Checker<'a> {
         for input in &node.inputs {
             if !matches!(
                 types::resolve(&input.ty, &f.dims, module.file),
-                Ok(Declared::Vector(..) | Declared::Resource(_) | Declared::Choice(_))
+                Ok(Declared::Vector(..)
+                    | Declared::Matrix(_)
+                    | Declared::Node(_)
+                    | Declared::Resource(_)
+                    | Declared::Choice(_))
             ) {
                 f.failed = true;
                 f.scopes[0].insert(&input.name.text, Wire::Unknown);
@@ -152,8 +179,14 @@ impl<'a> Checker<'a> {
         let file = self.modules[module].file;
         let dims: types::Dims = node.dims.iter().map(|d| (d.text.clone(), 2)).collect();
         let before = self.diagnostics.len();
-        let arguments = node.inputs.iter().map(|input| match types::resolve(&input.ty, &dims, file) {
+        let argument = |input: &texgraph_grammar::syntax::Input| match types::resolve(&input.ty, &dims, file)
+        {
             Ok(Declared::Vector(scalar, width)) => ArgumentKey::Value(Type::Vector(scalar, width)),
+            Ok(Declared::Matrix(size)) => {
+                let column = ArgumentKey::Value(Type::Vector(Scalar::Float, size));
+                ArgumentKey::Matrix(vec![column; usize::from(size)])
+            }
+            Ok(Declared::Node(ty)) => ArgumentKey::Node(self.some_node(&ty)),
             Ok(Declared::Resource(kind)) => ArgumentKey::Resource(kind, placeholder(kind)),
             Ok(Declared::Choice(words)) => ArgumentKey::Word(words.into_iter().next().unwrap_or_default()),
             Ok(_) => {
@@ -165,14 +198,24 @@ impl<'a> Checker<'a> {
                 self.diagnostics.push(diagnostic);
                 ArgumentKey::None
             }
-        });
-        let key = Key {
-            module,
-            item,
-            dims: dims.iter().map(|(_, width)| *width).collect(),
-            arguments: arguments.collect(),
         };
+        let arguments = node.inputs.iter().map(argument).collect();
+        let key =
+            Key { module, item, dims: dims.iter().map(|(_, width)| *width).collect(), arguments, wire: None };
         (key, self.diagnostics.len() == before)
+    }
+
+    /// A node of a type that gives anything: its outputs are captures.
+    fn some_node(&mut self, ty: &NodeType) -> FunctionId {
+        let mut builder = Builder::new("node");
+        for (name, declared) in &ty.inputs {
+            open_input(&mut builder, name, declared);
+        }
+        let given = open_input(&mut builder, "given", &ty.output);
+        for (name, value) in slots(&ty.output, "value").into_iter().zip(values_of(&given)) {
+            builder.output(name, value);
+        }
+        self.intern(builder.finish())
     }
 
     fn check_signature(&mut self, module: usize, item: usize, node: &Node) -> bool {
@@ -221,6 +264,16 @@ impl<'a> Checker<'a> {
                 wanted.first().copied().unwrap_or_default(),
             ));
         }
+    }
+}
+
+/// The values of a wire of numbers, in order.
+fn values_of(wire: &Wire) -> Vec<Value> {
+    match wire {
+        Wire::Value(value) => vec![*value],
+        Wire::Matrix(columns) => columns.to_vec(),
+        Wire::Record(fields) => fields.iter().flat_map(|(_, wire)| values_of(wire)).collect(),
+        _ => Vec::new(),
     }
 }
 

@@ -4,6 +4,7 @@ use super::wire::Wire;
 use crate::diagnostic::{Diagnostic, Place, types};
 use crate::graph::{Scalar, Type};
 use crate::resource::{KINDS, LATER};
+use std::rc::Rc;
 use texgraph_grammar::syntax::{self, Dim, TypeKind};
 
 /// A declared type with its dimension variables bound.
@@ -11,8 +12,16 @@ use texgraph_grammar::syntax::{self, Dim, TypeKind};
 pub enum Declared {
     /// A number, vector or bool.
     Vector(Scalar, u8),
+    /// A matrix of so many columns, each as long.
+    Matrix(u8),
     /// A resource, by its row in the table of kinds.
     Resource(usize),
+    /// A node.
+    Node(Rc<NodeType>),
+    /// Inside a node's type only: several values with names.
+    Record(Vec<(String, Declared)>),
+    /// What a baked node gives: one to four floats.
+    Texel,
     /// One of these words.
     Choice(Vec<String>),
     /// Constructors only: a string.
@@ -21,6 +30,15 @@ pub enum Declared {
     Texts,
     /// Constructors only: a string, or rows of ints.
     Cells,
+}
+
+/// What a node that is passed to another must take and give.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NodeType {
+    /// Numbers, matrices and records of them, with their names.
+    pub inputs: Vec<(String, Declared)>,
+    /// A number, a matrix or a record.
+    pub output: Declared,
 }
 
 /// Dimension variables with their values.
@@ -74,6 +92,15 @@ pub fn fixed_width(ty: &syntax::Type) -> Option<u8> {
     }
 }
 
+/// The columns of a matrix type.
+pub fn matrix(ty: &syntax::Type) -> Option<u8> {
+    match &ty.kind {
+        TypeKind::Named { name, .. } if name.text == "mat2" => Some(2),
+        TypeKind::Named { name, .. } if name.text == "mat3" => Some(3),
+        _ => None,
+    }
+}
+
 /// The row of the table of kinds that a type names.
 pub fn kind_of(ty: &syntax::Type) -> Option<usize> {
     match &ty.kind {
@@ -95,25 +122,50 @@ pub fn resolve(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Di
             None => resolve_other(&name.text, place),
         },
         TypeKind::Choice(words) => Ok(Declared::Choice(words.iter().map(|w| w.text.clone()).collect())),
-        TypeKind::Node { .. } => Err(crate::diagnostic::unsupported::not_yet(place, "nodes as inputs")),
+        TypeKind::Node { inputs, output } => {
+            let inputs = fields(inputs, dims, file)?;
+            let output = part(output, dims, file)?;
+            Ok(Declared::Node(Rc::new(NodeType { inputs, output })))
+        }
         TypeKind::Record(_) => Err(types::type_not_allowed(place, "a record", "an input or output")),
     }
 }
 
+/// The fields of a record type, or the inputs of a node type.
+fn fields(fields: &[syntax::Field], dims: &Dims, file: u32) -> Result<Vec<(String, Declared)>, Diagnostic> {
+    fields.iter().map(|field| Ok((field.name.text.clone(), part(&field.ty, dims, file)?))).collect()
+}
+
+/// What may stand inside a node's type: numbers, matrices, and records of them.
+fn part(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Diagnostic> {
+    if let TypeKind::Record(parts) = &ty.kind {
+        return Ok(Declared::Record(fields(parts, dims, file)?));
+    }
+    match resolve(ty, dims, file)? {
+        fine @ (Declared::Vector(..) | Declared::Matrix(_) | Declared::Texel) => Ok(fine),
+        _ => Err(types::type_not_allowed(Place { file, span: ty.span }, &show(ty), "a node's type")),
+    }
+}
+
 fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
-    if let Some(kind) = KINDS.iter().position(|kind| kind.name == name) {
+    if let Some(kind) = KINDS.iter().position(|kind| kind.name == name && kind.gives.is_none()) {
         return Ok(Declared::Resource(kind));
     }
     match name {
         "text" => Ok(Declared::Text),
         "texts" => Ok(Declared::Texts),
         "cells" => Ok(Declared::Cells),
-        "mat2" | "mat3" => Err(crate::diagnostic::unsupported::not_yet(place, "matrices")),
+        "texel" => Ok(Declared::Texel),
+        "mat2" => Ok(Declared::Matrix(2)),
+        "mat3" => Ok(Declared::Matrix(3)),
         _ if LATER.contains(&name) => {
             Err(crate::diagnostic::unsupported::not_yet(place, &format!("`{name}`")))
         }
         _ => {
-            let known = ["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "bool", "color"];
+            let known = [
+                "float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "bool", "color", "mat2",
+                "mat3",
+            ];
             let known = known.into_iter().chain(KINDS.iter().map(|kind| kind.name));
             Err(types::unknown_type(place, name, crate::diagnostic::names::nearest(name, known)))
         }
@@ -170,6 +222,9 @@ pub fn describe(wire: &Wire, ty: impl Fn(crate::graph::Value) -> Type) -> String
         Wire::Value(value) => kind(&name(ty(*value))),
         Wire::View(_) => "the view of a resource".to_owned(),
         Wire::Record(_) => "a record of several outputs".to_owned(),
+        Wire::Matrix(columns) => kind(&format!("mat{}", columns.len())),
+        Wire::Node(_) | Wire::Callables(_) => "a node".to_owned(),
+        Wire::Lambda => "a lambda".to_owned(),
         Wire::Resource(resource) => kind(KINDS[resource.kind].name),
         Wire::Word(word, _) => format!("the word `{word}`"),
         Wire::Text(_) => "a string".to_owned(),

@@ -1,7 +1,9 @@
 //! What a name or an expression stands for while a function is being made.
 
+use super::types::NodeType;
 use crate::diagnostic::Place;
-use crate::graph::{Constant, Type, Value};
+use crate::graph::{Constant, FunctionId, Type, Value};
+use crate::library::Callable;
 use std::rc::Rc;
 
 /// What an expression gives.
@@ -13,8 +15,16 @@ pub enum Wire {
     View(Value),
     /// The outputs of a node with several.
     Record(Rc<Vec<(String, Wire)>>),
+    /// A matrix, by its columns.
+    Matrix(Rc<[Value]>),
     /// A resource.
     Resource(Rc<ResourceWire>),
+    /// A node: an input of this function, or an argument made ready for one.
+    Node(Rc<NodeWire>),
+    /// The nodes of another file by this name, before it is known whether one is wanted.
+    Callables(Rc<ImportedNodes>),
+    /// A lambda, before the node's type is known.
+    Lambda,
     /// A bare word that names no value; fine where an input's type lists it.
     Word(String, Place),
     /// A string.
@@ -38,6 +48,26 @@ pub struct ResourceWire {
     pub constants: Vec<(&'static str, Constant)>,
 }
 
+/// A node as a value: a function whose inputs are those of its type, then its captures.
+#[derive(Clone, Debug)]
+pub struct NodeWire {
+    /// The function.
+    pub function: FunctionId,
+    /// What it takes and gives.
+    pub ty: Rc<NodeType>,
+    /// What it reads from where it was written, as values of the function being made.
+    pub captures: Vec<Value>,
+}
+
+/// What `alias.name` may call.
+#[derive(Clone, Debug)]
+pub struct ImportedNodes {
+    /// As written, alias included.
+    pub name: String,
+    /// The nodes of that name.
+    pub callables: Vec<Callable>,
+}
+
 /// An argument as far as it decides which specialisation is meant.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum ArgumentKey {
@@ -47,6 +77,10 @@ pub enum ArgumentKey {
     Value(Type),
     /// A resource: its views are inputs, its constants part of the function.
     Resource(usize, Vec<(&'static str, Constant)>),
+    /// A matrix, column by column.
+    Matrix(Vec<ArgumentKey>),
+    /// A node: its captures are inputs, the rest part of the function.
+    Node(FunctionId),
     /// A bare word.
     Word(String),
     /// A resource that was not given.
@@ -64,4 +98,6 @@ pub struct Key {
     pub dims: Vec<u8>,
     /// The inputs, in order.
     pub arguments: Vec<ArgumentKey>,
+    /// A wire of the body that it gives in place of its outputs.
+    pub wire: Option<String>,
 }

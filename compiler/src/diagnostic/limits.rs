@@ -6,6 +6,12 @@ use super::{Diagnostic, Place};
 pub const MAX_NODES: usize = 4_096;
 /// Values in a texture.
 pub const MAX_VALUES: usize = 200_000;
+/// Operations that working out constants may take, in a texture.
+pub const MAX_EVALUATION: u64 = 1_000_000;
+/// Steps of a fold, times those of the folds inside it.
+pub const MAX_STEPS: u32 = 65_536;
+/// Entries of a constant table.
+pub const MAX_TABLE: usize = 2_047;
 
 /// More specialised nodes than a texture may have.
 pub fn too_many_nodes(place: Place, name: &str) -> Diagnostic {
@@ -29,10 +35,15 @@ pub fn too_many_values(place: Place, name: &str) -> Diagnostic {
     .help("split the texture, or bake a part of it")
 }
 
-/// A fold with more steps than this version writes out.
-pub fn too_many_steps(place: Place, steps: i64) -> Diagnostic {
-    Diagnostic::new("E0404", place, format!("a fold of {steps} steps is too long"), "at most 256 steps")
-        .help("this version of texgraph writes every step out: use fewer")
+/// More constant arithmetic than compiling may do.
+pub fn too_much_evaluation(place: Place, name: &str) -> Diagnostic {
+    Diagnostic::new(
+        "E0403",
+        place,
+        format!("the constants of `{name}` take more than {MAX_EVALUATION} operations to compute"),
+        "this fold is worked out when compiling",
+    )
+    .help("make it shorter, or let it depend on a param: then the shader computes it")
 }
 
 /// No texture to compile.

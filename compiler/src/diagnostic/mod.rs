@@ -7,9 +7,11 @@
 pub mod arguments;
 pub mod codes;
 pub mod constructors;
+pub mod folds;
 pub mod imports;
 pub mod limits;
 pub mod names;
+pub mod nodes;
 pub mod rates;
 pub mod render;
 pub mod resources;

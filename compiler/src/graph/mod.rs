@@ -392,6 +392,15 @@ pub struct ResourceView {
     pub view: View,
 }
 
+/// The graph of one pass of a program.
+#[derive(Clone, Debug)]
+pub struct PassGraph {
+    /// What it computes.
+    pub graph: Graph,
+    /// The resource that it fills, if it is a bake.
+    pub bake: Option<u32>,
+}
+
 /// Everything one texture computes.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {

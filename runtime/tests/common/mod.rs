@@ -106,6 +106,7 @@ pub fn graph_of(manifest: &Manifest) -> Graph {
             place: Place { file: index as u32, ..Place::default() },
             recipe: resource.recipe.clone(),
             sampler: None,
+            bake: None,
         }
     });
     Graph { resources: resources.collect(), ..Graph::default() }
