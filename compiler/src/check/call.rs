@@ -5,7 +5,7 @@ use super::types;
 use super::view::view_of;
 use super::wire::{ArgumentKey, ImportedNodes, Key, Wire};
 use super::{Checker, Frame, Outcome};
-use crate::diagnostic::{Place, arguments as sentences, names};
+use crate::diagnostic::{Place, arguments as sentences, names, nodes};
 use crate::graph::{Constant, FunctionId, Operation, Value};
 use crate::library::Callable;
 use crate::resource::KINDS;
@@ -264,6 +264,9 @@ impl<'a> Checker<'a> {
         let first = given.first();
         if let Some(Wire::Word(word, at)) = first.map(|given| &given.wire) {
             return self.unknown_value(f, word, *at);
+        }
+        if let Some(lambda) = given.iter().find(|given| matches!(given.wire, Wire::Lambda)) {
+            return self.report(f, nodes::lambda_as_value(lambda.place));
         }
         let found = first
             .map_or_else(|| "nothing".to_owned(), |given| types::describe(&given.wire, |v| f.builder.ty(v)));

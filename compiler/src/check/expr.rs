@@ -257,15 +257,23 @@ impl<'a> Checker<'a> {
             },
             _ => None,
         };
+        let vector = match (&table, &wire) {
+            (None, Wire::Value(vector)) => Some(*vector),
+            (Some(_), _) | (_, Wire::Matrix(_)) => None,
+            (None, other) => {
+                self.value(f, other, base);
+                return Wire::Unknown;
+            }
+        };
         let Some(index) = self.coerce_value(f, &index, Scalar::Int, 1, at) else { return Wire::Unknown };
+        f.builder.set_place(place);
         if let Some(table) = table {
-            f.builder.set_place(place);
             return Wire::Value(lookup(f, table, index));
         }
         if let Wire::Matrix(columns) = &wire {
             return self.column(f, columns, index);
         }
-        let Some(vector) = self.value(f, &wire, base) else { return Wire::Unknown };
+        let Some(vector) = vector else { return Wire::Unknown };
         f.builder.set_place(place);
         let width = f.builder.ty(vector).width();
         if let Some(known) = f.builder.as_constant(index) {
