@@ -3,7 +3,7 @@
 use super::arguments::{Bound, Head};
 use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
-use crate::diagnostic::{Diagnostic, Place, constructors, nodes};
+use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};
 use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, ViewId};
 use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, made_by};
 use std::rc::Rc;
@@ -26,16 +26,16 @@ impl<'a> Checker<'a> {
                 Err(diagnostic) => return self.report(f, diagnostic),
             }
         }
-        let bake = match bound
-            .wires
-            .iter()
-            .find_map(|wire| if let Wire::Node(node) = wire { Some(node) } else { None })
-        {
-            Some(node) if !node.captures.is_empty() => {
+        let mut nodes = bound.wires.iter().zip(&bound.places).filter_map(|(wire, at)| match wire {
+            Wire::Node(node) => Some((node, *at)),
+            _ => None,
+        });
+        let bake = match nodes.next() {
+            Some((node, at)) if !node.captures.is_empty() => {
                 let names = self.captured_names(f, &node.captures);
-                return self.report(f, nodes::bake_reads(place, &names));
+                return self.report(f, sentences::bake_reads(at, &names));
             }
-            node => node.map(|node| node.function),
+            node => node.map(|(node, _)| node.function),
         };
         let file = self.modules[f.module].path.clone();
         match (KINDS[kind].make)(&Arguments { place, file, values }) {
