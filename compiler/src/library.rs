@@ -42,7 +42,15 @@ impl Library {
     /// A file of the library or a row of a table is broken, with a sentence that says which: a bug
     /// of texgraph.
     pub fn standard() -> Result<Library, String> {
-        Library::from_files(FILES)
+        Library::with(&[])
+    }
+
+    /// The library with further files (path and text): nodes that a host gives all its programs.
+    ///
+    /// # Errors
+    /// A file can't be parsed, with a sentence that says which and where.
+    pub fn with(files: &[(&str, &str)]) -> Result<Library, String> {
+        Library::from_files(&[FILES, files].concat())
     }
 
     fn from_files(files: &[(&str, &str)]) -> Result<Library, String> {
