@@ -12,6 +12,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/tiling.tex", include_str!("../std/tiling.tex")),
     ("std/resources.tex", include_str!("../std/resources.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),
+    ("std/matrix.tex", include_str!("../std/matrix.tex")),
 ];
 
 /// What a name before `(` may mean.
