@@ -19,6 +19,7 @@ use rustc_hash::FxHashMap;
 pub const MAX_DEPTH: u32 = 32;
 
 /// What placing has to know of the functions of a graph.
+#[derive(Default)]
 pub struct Weights {
     heavy: Vec<bool>,
     loops: Vec<u32>,
@@ -27,14 +28,16 @@ pub struct Weights {
 impl Weights {
     /// Looks at every function once, callees first.
     pub fn of(graph: &Graph) -> Weights {
-        let mut weights = Weights { heavy: Vec::new(), loops: Vec::new() };
-        for function in &graph.functions {
-            let heavy = function.values.iter().any(|operation| weights.is_heavy(operation));
-            let loops = function.values.iter().map(|operation| weights.loops_of(operation)).max();
-            weights.heavy.push(heavy);
-            weights.loops.push(loops.unwrap_or(0));
-        }
+        let mut weights = Weights::default();
+        graph.functions.iter().for_each(|function| weights.add(function));
         weights
+    }
+
+    /// Looks at one more function, whose callees have been looked at.
+    pub fn add(&mut self, function: &Function) {
+        let heavy = function.values.iter().any(|operation| self.is_heavy(operation));
+        self.heavy.push(heavy);
+        self.loops.push(self.loops_in(function));
     }
 
     /// Whether an operation is worth a branch: a sample, a fetch, a fold, or a call of a function
@@ -47,17 +50,23 @@ impl Weights {
         }
     }
 
-    /// How deep the loops of a function nest; what it calls stands elsewhere and does not count.
+    /// How deep the blocks of a function's loops nest; what it calls stands elsewhere and does not
+    /// count.
     pub fn loops(&self, function: FunctionId) -> u32 {
         self.loops.get(function.0 as usize).copied().unwrap_or(0)
     }
 
-    /// How deep the loops of an operation nest, its own included.
+    fn loops_in(&self, function: &Function) -> u32 {
+        function.values.iter().map(|operation| self.loops_of(operation)).max().unwrap_or(0)
+    }
+
+    /// How deep the blocks of an operation's loops nest, its own included.
     pub fn loops_of(&self, operation: &Operation) -> u32 {
         match operation {
             Operation::Fold(fold) => {
-                let parts = [Some(fold.body), fold.condition];
-                1 + parts.into_iter().flatten().map(|part| self.loops(part)).max().unwrap_or(0)
+                let inner = fold.functions().map(|part| self.loops(part)).max();
+                // At least the block that ends the loop.
+                1 + inner.unwrap_or(0).max(1)
             }
             _ => 0,
         }
@@ -88,7 +97,9 @@ pub struct Branch {
 pub struct Regions {
     blocks: Vec<Block>,
     places: Vec<Option<Region>>,
-    branches: FxHashMap<Value, Branch>,
+    branches: Vec<Branch>,
+    /// For each choice of a branch which one.
+    branch_of: FxHashMap<Value, usize>,
 }
 
 /// A region with what it is inside of.
@@ -108,19 +119,23 @@ impl Regions {
     /// The regions of a function whose text begins `depth` blocks deep. The values marked in
     /// `first` (by index, operands of marked ones marked too) stand at the top whoever uses them.
     pub fn inside(function: &Function, weights: &Weights, depth: u32, first: &[bool]) -> Regions {
-        let loops = function.values.iter().map(|operation| weights.loops_of(operation)).max().unwrap_or(0);
         let live = live(function);
         let mut placing = Placing {
             function,
             first,
             live: &live,
-            groups: Groups::of(function, &live),
-            deepest: MAX_DEPTH.saturating_sub(loops),
+            groups: Groups::of(function, |value| live[value.0 as usize] && !is_marked(first, value)),
+            deepest: MAX_DEPTH.saturating_sub(weights.loops_in(function)),
             blocks: Vec::new(),
             places: Vec::new(),
         };
-        placing.place(depth);
-        placing.keep_heavy(weights);
+        let heavy = function.values.iter().any(|operation| weights.is_heavy(operation));
+        if heavy && !placing.groups.all.is_empty() {
+            placing.place(depth);
+            placing.keep_heavy(weights);
+        } else {
+            placing.groups.all.iter_mut().for_each(|group| group.branches = false);
+        }
         placing.place(depth);
         placing.finish()
     }
@@ -146,9 +161,9 @@ impl Regions {
         &self.blocks[region.0 as usize].values
     }
 
-    /// The branch whose first choice a value is.
-    pub fn branch(&self, value: Value) -> Option<&Branch> {
-        self.branches.get(&value)
+    /// The branch that makes a choice; none for one that selects.
+    pub fn branch(&self, choice: Value) -> Option<&Branch> {
+        self.branches.get(*self.branch_of.get(&choice)?)
     }
 }
 
@@ -162,6 +177,10 @@ fn live(function: &Function) -> Vec<bool> {
         }
     }
     live
+}
+
+fn is_marked(marked: &[bool], value: Value) -> bool {
+    marked.get(value.0 as usize).copied().unwrap_or(false)
 }
 
 /// Choices by one condition that could share a branch.
@@ -183,10 +202,10 @@ struct Groups {
 }
 
 impl Groups {
-    fn of(function: &Function, live: &[bool]) -> Groups {
+    fn of(function: &Function, belongs: impl Fn(Value) -> bool) -> Groups {
         let mut groups = Groups { all: Vec::new(), of: vec![None; function.values.len()] };
         let mut latest: FxHashMap<Value, usize> = FxHashMap::default();
-        for (value, operation) in function.iter().filter(|(value, _)| live[value.0 as usize]) {
+        for (value, operation) in function.iter().filter(|(value, _)| belongs(*value)) {
             let Operation::Select(condition, yes, no) = operation else { continue };
             let joined = latest.get(condition).copied().filter(|group| {
                 let first = groups.all[*group].choices[0];
@@ -251,7 +270,7 @@ impl Placing<'_> {
                 | Operation::View(_)
                 | Operation::Derivative(..)
         );
-        leaf || self.first.get(value.0 as usize).copied().unwrap_or(false)
+        leaf || is_marked(self.first, value)
     }
 
     /// Notes that a value is used in a region.
@@ -328,26 +347,23 @@ impl Placing<'_> {
 
     /// Sorts the values into their regions.
     fn finish(mut self) -> Regions {
-        let mut branches = FxHashMap::default();
+        let mut branches = Vec::new();
+        let mut branch_of = FxHashMap::default();
         for group in self.groups.all {
             if let Some(arms) = group.arms {
-                for choice in &group.choices[1..] {
-                    self.groups.of[choice.0 as usize] = None;
-                }
-                let branch = Branch { condition: group.condition, arms, choices: group.choices };
-                branches.insert(branch.choices[0], branch);
+                branch_of.extend(group.choices.iter().map(|choice| (*choice, branches.len())));
+                branches.push(Branch { condition: group.condition, arms, choices: group.choices });
             }
         }
-        let follows = |value: Value| matches!(self.function.operation(value), Operation::Select(..));
-        for (i, place) in self.places.iter().enumerate() {
-            let value = Value(i as u32);
-            let Some(place) = place else { continue };
-            let later = follows(value) && self.groups.of[i].is_none();
-            if !later {
+        for (value, place) in (0..).map(Value).zip(&self.places) {
+            let branch = branch_of.get(&value).map(|branch| &branches[*branch]);
+            if let Some(place) = place
+                && branch.is_none_or(|branch| branch.choices[0] == value)
+            {
                 self.blocks[place.0 as usize].values.push(value);
             }
         }
-        Regions { blocks: self.blocks, places: self.places, branches }
+        Regions { blocks: self.blocks, places: self.places, branches, branch_of }
     }
 }
 
@@ -451,7 +467,7 @@ mod tests {
         let (_, regions) = t.regions(&[second, third]);
         let branch = regions.branch(first).expect("it branches");
         assert_eq!(branch.choices, [first, second]);
-        assert_eq!(regions.branch(second), None);
+        assert_eq!(regions.branch(second), Some(branch));
         let other = regions.branch(third).expect("it branches");
         assert_eq!(regions.place(again), Some(other.arms[0]));
         // The first choice is needed in the other branch alone, the second outside: both are made
@@ -518,7 +534,7 @@ mod tests {
         b.output("alone", alone);
         let graph = Graph { functions: vec![body, light, looping, b.finish()], ..Graph::default() };
         let weights = Weights::of(&graph);
-        assert_eq!((0..4).map(|i| weights.loops(FunctionId(i))).collect::<Vec<_>>(), [0, 0, 1, 0]);
+        assert_eq!((0..4).map(|i| weights.loops(FunctionId(i))).collect::<Vec<_>>(), [0, 0, 2, 0]);
         let regions = Regions::of(&graph.functions[3], &weights);
         assert_eq!(regions.branch(heavy).map(|branch| branch.choices.len()), Some(2));
         assert_eq!(regions.branch(alone), None);
