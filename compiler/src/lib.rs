@@ -10,7 +10,7 @@
 
 mod check;
 pub mod color;
-mod contract;
+pub mod contract;
 pub mod diagnostic;
 pub mod emit;
 pub mod graph;

@@ -92,18 +92,41 @@ fn is_reserved(name: &str) -> bool {
 
 /// Final names by placeholder.
 #[derive(Default)]
-pub struct Names(Vec<String>);
+pub struct Names(Vec<Name>);
+
+/// What a placeholder stands for.
+struct Name {
+    text: String,
+    /// It is another thing's name: the line that would declare it is left out.
+    alias: bool,
+}
 
 impl Names {
     /// A placeholder for a final name.
     pub fn placeholder(&mut self, name: String) -> String {
+        self.push(Name { text: name, alias: false })
+    }
+
+    /// A placeholder for what has a final name already, such as the value of a variable.
+    pub fn alias(&mut self, name: String) -> String {
+        self.push(Name { text: name, alias: true })
+    }
+
+    fn push(&mut self, name: Name) -> String {
         self.0.push(name);
         format!("z{}z", self.0.len() - 1)
     }
 
-    fn get(&self, token: &str) -> Option<&str> {
+    fn get(&self, token: &str) -> Option<&Name> {
         let number = token.strip_prefix('z')?.strip_suffix('z')?;
-        self.0.get(number.parse::<usize>().ok()?).map(String::as_str)
+        self.0.get(number.parse::<usize>().ok()?)
+    }
+
+    /// What follows the line whose `let` is followed by `after`, if that line declares an alias.
+    fn behind_alias<'t>(&self, after: &'t str) -> Option<&'t str> {
+        let (line, behind) = after.split_once('\n')?;
+        let (declared, _) = line.trim_start().split_once(' ')?;
+        self.get(declared).is_some_and(|name| name.alias).then_some(behind)
     }
 
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
@@ -118,10 +141,17 @@ impl Names {
             let end = from.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(from.len());
             let (token, after) = from.split_at(end);
             function += usize::from(token == "fn");
+            if token == "let"
+                && let Some(behind) = self.behind_alias(after)
+            {
+                out.truncate(out.trim_end_matches(' ').len());
+                rest = behind;
+                continue;
+            }
             let result = token.strip_prefix("_e").and_then(|n| n.parse::<u32>().ok());
             let result =
                 result.and_then(|n| results.get(function.wrapping_sub(1))?.get(&n)).map(String::as_str);
-            out.push_str(self.get(token).or(result).unwrap_or(token));
+            out.push_str(self.get(token).map(|name| name.text.as_str()).or(result).unwrap_or(token));
             // A number's suffix or exponent is no name: skip what directly follows a digit.
             rest = after;
         }
@@ -155,5 +185,15 @@ mod tests {
         let at = names.placeholder("at".to_owned());
         let text = format!("let {cell} = 1e-3f + {at}.x * 0x1fu;");
         assert_eq!(names.apply(&text, &[]), "let cell = 1e-3f + at.x * 0x1fu;");
+    }
+
+    #[test]
+    fn aliases_are_written_as_what_they_stand_for() {
+        let mut names = Names::default();
+        let variable = names.placeholder("sum".to_owned());
+        let value = names.alias("sum".to_owned());
+        let next = names.placeholder("next".to_owned());
+        let text = format!("{{\n    let {value} = {variable};\n    let {next} = {value} + 1;\n}}\n");
+        assert_eq!(names.apply(&text, &[]), "{\n    let next = sum + 1;\n}\n");
     }
 }

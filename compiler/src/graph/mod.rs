@@ -9,6 +9,7 @@ mod builder;
 mod constant;
 mod dump;
 pub mod evaluate;
+pub mod regions;
 
 pub use builder::Builder;
 pub use constant::Constant;
@@ -215,6 +216,11 @@ pub struct Fold {
 }
 
 impl Fold {
+    /// Its body, and its condition if it has one.
+    pub fn functions(&self) -> impl Iterator<Item = FunctionId> {
+        std::iter::once(self.body).chain(self.condition)
+    }
+
     /// Calls `f` with each operand: the starts, the steps, the captures.
     pub fn for_operands(&self, mut f: impl FnMut(Value)) {
         self.starts.iter().chain([&self.steps]).chain(&self.captures).for_each(|v| f(*v));

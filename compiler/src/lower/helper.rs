@@ -1,11 +1,11 @@
 //! Functions that the shader brings along.
 
 use super::Lowering;
-use super::function::Body;
+use super::body::Body;
 use super::types::{Types, numeric};
 use crate::intrinsic::Helper;
 use crate::naming::Scope;
-use naga::{BinaryOperator, Expression, Handle, Literal, Span, Statement};
+use naga::{BinaryOperator, Expression, Handle, Literal, Span};
 
 impl Lowering<'_> {
     /// The function, made when first needed.
@@ -36,40 +36,34 @@ impl Lowering<'_> {
             result: Some(naga::FunctionResult { ty: floats, binding: None }),
             ..Default::default()
         };
-        let mut b = Body::new(&mut function);
+        let mut b = Body::new(&mut function, scope);
         let v = b.add(Expression::FunctionArgument(0));
         let v = b.convert(v, naga::ScalarKind::Uint);
         let scaled = b.with_word(BinaryOperator::Multiply, v, 1_664_525);
         let seeded = b.with_word(BinaryOperator::Add, scaled, 1_013_904_223);
-        b.name(seeded, self.names.placeholder(scope.name("seeded")));
-        let first = self.round(&mut b, &mut scope, seeded, words);
-        b.name(first, self.names.placeholder(scope.name("first")));
+        b.name(&mut self.names, seeded, "seeded");
+        let first = self.round(&mut b, seeded, words);
+        b.name(&mut self.names, first, "first");
         let shifted = b.with_word(BinaryOperator::ShiftRight, first, 16);
         let mixed = b.binary(BinaryOperator::ExclusiveOr, first, shifted);
-        b.name(mixed, self.names.placeholder(scope.name("mixed")));
-        let second = self.round(&mut b, &mut scope, mixed, words);
+        b.name(&mut self.names, mixed, "mixed");
+        let second = self.round(&mut b, mixed, words);
         let upper = b.with_word(BinaryOperator::ShiftRight, second, 8);
         let upper = b.convert(upper, naga::ScalarKind::Float);
         let unit = b.literal(Literal::F32(1.0 / 16_777_216.0));
         let result = b.binary(BinaryOperator::Multiply, upper, unit);
-        b.finish(Statement::Return { value: Some(result) });
+        b.finish(result);
         function
     }
 
     /// x += y·w, y += z·x, z += x·y, w += y·z, each with what was just computed.
-    fn round(
-        &mut self,
-        b: &mut Body,
-        scope: &mut Scope,
-        v: Handle<Expression>,
-        ty: Handle<naga::Type>,
-    ) -> Handle<Expression> {
+    fn round(&mut self, b: &mut Body, v: Handle<Expression>, ty: Handle<naga::Type>) -> Handle<Expression> {
         let mut part: Vec<Handle<Expression>> =
             (0..4).map(|i| b.add(Expression::AccessIndex { base: v, index: i })).collect();
         for (to, a, c) in [(0, 1, 3), (1, 2, 0), (2, 0, 1), (3, 1, 2)] {
             let product = b.binary(BinaryOperator::Multiply, part[a], part[c]);
             part[to] = b.binary(BinaryOperator::Add, part[to], product);
-            b.name(part[to], self.names.placeholder(scope.name(["x", "y", "z", "w"][to])));
+            b.name(&mut self.names, part[to], ["x", "y", "z", "w"][to]);
         }
         b.add(Expression::Compose { ty, components: part })
     }

@@ -4,18 +4,23 @@
 //! the params it reads, then the views it reads with their samplers, itself or through what it
 //! calls. One thin wrapper around the entry reads the globals (see `wrap`).
 
+mod block;
+mod body;
+mod fold;
+mod frame;
 mod function;
 mod helper;
 mod operation;
 mod types;
 mod wrap;
 
-use crate::graph::{Graph, Operation, ParamId, ViewId};
+use crate::graph::regions::Weights;
+use crate::graph::{FunctionId, Graph, Operation, ParamId, ViewId};
 use crate::intrinsic::Helper;
 use crate::manifest::Manifest;
 use crate::naming::{self, Names, Scope};
+use body::Results;
 use naga::{Handle, Span};
-use rustc_hash::FxHashMap;
 use std::collections::{BTreeMap, BTreeSet};
 use types::Types;
 
@@ -26,7 +31,7 @@ pub struct Lowered {
     /// The names.
     pub names: Names,
     /// For each function in the text's order the names of the results of calls.
-    pub results: Vec<FxHashMap<u32, String>>,
+    pub results: Vec<Results>,
 }
 
 /// Whether a name is taken by the shader language.
@@ -45,7 +50,6 @@ struct Captures {
 /// A lowered function.
 struct Callee {
     handle: Handle<naga::Function>,
-    captures: Captures,
     /// Its result is a struct, one member for each output.
     is_struct: bool,
     /// For messages and names of results.
@@ -62,9 +66,13 @@ struct Lowering<'a> {
     /// Names of the module's own things.
     scope: Scope,
     prefix: String,
-    functions: Vec<Callee>,
+    weights: Weights,
+    /// For each function of the graph.
+    captures: Vec<Captures>,
+    /// The same, so far; folds' steps and conditions stand in place and are none.
+    functions: Vec<Option<Callee>>,
     helpers: BTreeMap<Helper, Handle<naga::Function>>,
-    results: Vec<FxHashMap<u32, String>>,
+    results: Vec<Results>,
 }
 
 /// Lowers a graph whose passes have run, wrapped as its manifest says.
@@ -77,7 +85,9 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
         names: Names::default(),
         scope: Scope::default(),
         prefix: naming::identifier(&manifest.texture),
-        functions: Vec::new(),
+        weights: Weights::of(graph),
+        captures: captures(graph),
+        functions: graph.functions.iter().map(|_| None).collect(),
         helpers: BTreeMap::new(),
         results: Vec::new(),
     };
@@ -89,7 +99,8 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
         l.scope.take(&texture.name);
         texture.sampler.iter().for_each(|sampler| l.scope.take(&sampler.name));
     }
-    for i in 0..graph.functions.len() {
+    let in_place = in_place(graph);
+    for i in (0..graph.functions.len()).filter(|i| !in_place.contains(i)) {
         l.function(i);
     }
     l.wrap(&entry);
@@ -132,10 +143,21 @@ impl Lowering<'_> {
         self.module.types.insert(naga::Type { name, inner }, Span::UNDEFINED)
     }
 
-    /// What a function and all it calls read.
-    fn captures(&self, index: usize) -> Captures {
+    /// A function that has been lowered.
+    fn callee(&self, id: FunctionId) -> &Callee {
+        match &self.functions[id.0 as usize] {
+            Some(callee) => callee,
+            None => unreachable!("a function is lowered before its callers"),
+        }
+    }
+}
+
+/// What each function and all it calls read.
+fn captures(graph: &Graph) -> Vec<Captures> {
+    let mut all: Vec<Captures> = Vec::with_capacity(graph.functions.len());
+    for function in &graph.functions {
         let mut captures = Captures::default();
-        for operation in &self.graph.functions[index].values {
+        for operation in &function.values {
             match operation {
                 Operation::Param(id) => {
                     captures.params.insert(*id);
@@ -143,16 +165,33 @@ impl Lowering<'_> {
                 Operation::View(id) => {
                     captures.views.insert(*id);
                 }
-                Operation::Call(callee, _) => {
-                    let inner = &self.functions[callee.0 as usize].captures;
-                    captures.params.extend(&inner.params);
-                    captures.views.extend(&inner.views);
+                Operation::Call(callee, _) => captures.extend(&all[callee.0 as usize]),
+                Operation::Fold(fold) => {
+                    fold.functions().for_each(|part| captures.extend(&all[part.0 as usize]));
                 }
                 _ => {}
             }
         }
-        captures
+        all.push(captures);
     }
+    all
+}
+
+impl Captures {
+    fn extend(&mut self, other: &Captures) {
+        self.params.extend(&other.params);
+        self.views.extend(&other.views);
+    }
+}
+
+/// The steps and conditions of folds.
+fn in_place(graph: &Graph) -> BTreeSet<usize> {
+    let operations = graph.functions.iter().flat_map(|function| &function.values);
+    let folds = operations.filter_map(|operation| match operation {
+        Operation::Fold(fold) => Some(fold),
+        _ => None,
+    });
+    folds.flat_map(|fold| fold.functions()).map(|part| part.0 as usize).collect()
 }
 
 /// A member of a struct in the making.

@@ -1,9 +1,10 @@
 //! One operation as one expression (or a few).
 
 use super::Lowering;
-use super::function::{Body, Frame, Splat, has_sampler, splat_of};
+use super::body::Body;
+use super::frame::{Frame, Splat, has_sampler, splat_of};
 use super::types::{numeric, scalar, size};
-use crate::graph::{Axis, Constant, Level, Operation, Scalar, Type, Value};
+use crate::graph::{Axis, Constant, FunctionId, Level, Operation, Scalar, Type, Value};
 use crate::intrinsic::{Form, Intrinsic, MULTIPLY, MULTIPLY_INT};
 use naga::{BinaryOperator, Expression, Handle, Literal, MathFunction, ScalarKind, SwizzleComponent};
 
@@ -18,8 +19,8 @@ impl Lowering<'_> {
         match operation {
             Operation::Constant(constant) => self.constant(body, constant),
             Operation::Input(_) => frame.get(value),
-            Operation::Param(id) => frame.params[id],
-            Operation::View(id) => frame.views[id],
+            Operation::Param(id) => body.params[id],
+            Operation::View(id) => body.views[id],
             Operation::Builtin(intrinsic, arguments) => self.builtin(body, frame, *intrinsic, arguments),
             Operation::Compose(parts) => self.compose(body, frame, value, parts),
             Operation::Extract(vector, i) => {
@@ -48,14 +49,22 @@ impl Lowering<'_> {
             Operation::Size(view) => {
                 let query = naga::ImageQuery::Size { level: None };
                 let size = body.add(Expression::ImageQuery { image: frame.get(*view), query });
+                body.name(&mut self.names, size, "texels");
                 body.convert(size, ScalarKind::Sint)
             }
-            Operation::Lookup(..) | Operation::Fold(_) => unreachable!("not lowered yet"),
-            Operation::Call(callee, arguments) => self.call(body, frame, value, callee.0 as usize, arguments),
+            Operation::Lookup(..) => unreachable!("not lowered yet"),
+            Operation::Fold(fold) => {
+                let accumulators = self.fold(body, frame, value, fold);
+                let first = accumulators[0];
+                frame.folds.insert(value, accumulators);
+                first
+            }
+            Operation::Call(callee, arguments) => self.call(body, frame, value, *callee, arguments),
             Operation::Output(call, i) => match frame.function.operation(*call) {
-                Operation::Call(callee, _) if self.functions[callee.0 as usize].is_struct => {
+                Operation::Call(callee, _) if self.callee(*callee).is_struct => {
                     body.add(Expression::AccessIndex { base: frame.get(*call), index: *i })
                 }
+                Operation::Fold(_) => frame.folds[call][*i as usize],
                 _ => frame.get(*call),
             },
             Operation::Derivative(v, axis) => {
@@ -72,9 +81,9 @@ impl Lowering<'_> {
 
     /// A lowered operand. A constant vector is written out at each use: the writer would give one
     /// that is used twice a name of its own.
-    fn operand(&mut self, body: &mut Body, frame: &Frame, value: Value) -> Handle<Expression> {
-        match frame.function.operation(value) {
-            Operation::Constant(constant) if constant.width() > 1 => self.constant(body, constant),
+    pub(super) fn operand(&mut self, body: &mut Body, frame: &Frame, value: Value) -> Handle<Expression> {
+        match frame.constant(value) {
+            Some(constant) if constant.width() > 1 => self.constant(body, &constant),
             _ => frame.get(value),
         }
     }
@@ -174,7 +183,7 @@ impl Lowering<'_> {
         };
         body.add(Expression::ImageSample {
             image,
-            sampler: frame.samplers.get(&image).copied().unwrap_or(image),
+            sampler: body.samplers.get(&image).copied().unwrap_or(image),
             gather: None,
             coordinate,
             array_index: layer.map(|v| frame.get(v)),
@@ -190,32 +199,30 @@ impl Lowering<'_> {
         body: &mut Body,
         frame: &mut Frame,
         value: Value,
-        callee: usize,
+        callee: FunctionId,
         arguments: &[Value],
     ) -> Handle<Expression> {
         let operands: Vec<Handle<Expression>> =
             arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
-        let callee = &self.functions[callee];
+        let captures = &self.captures[callee.0 as usize];
         let mut all = Vec::new();
         let mut push = |handle: Handle<Expression>, ty: Type| {
             all.push(handle);
             if has_sampler(ty) {
-                all.extend(frame.samplers.get(&handle));
+                all.extend(body.samplers.get(&handle));
             }
         };
         operands.into_iter().zip(arguments).for_each(|(handle, v)| push(handle, frame.function.ty(*v)));
-        for id in &callee.captures.params {
-            push(frame.params[id], Type::FLOAT);
+        for id in &captures.params {
+            push(body.params[id], Type::FLOAT);
         }
-        for id in &callee.captures.views {
-            push(frame.views[id], Type::View(self.graph.views[id.0 as usize].view));
+        for id in &captures.views {
+            push(body.views[id], Type::View(self.graph.views[id.0 as usize].view));
         }
-        let (result, number) = body.call(callee.handle, all);
-        let wish = if callee.is_struct { None } else { self.author_of(frame, value) };
-        let name =
-            frame.scope.name(&wish.unwrap_or_else(|| format!("{}_of", callee.name.trim_start_matches('_'))));
-        frame.results.insert(number, name);
-        result
+        let callee = self.callee(callee);
+        let author = if callee.is_struct { None } else { self.author_of(frame, value) };
+        let wish = author.unwrap_or_else(|| format!("{}_of", callee.name.trim_start_matches('_')));
+        body.call(callee.handle, all, &wish)
     }
 
     /// What the author calls the only output of a call.
@@ -271,9 +278,7 @@ impl Lowering<'_> {
             }),
             Form::Helper(helper) => {
                 let function = self.helper(helper);
-                let (result, number) = body.call(function, operands);
-                frame.results.insert(number, frame.scope.name("random"));
-                result
+                body.call(function, operands, "random")
             }
             Form::Expand(_) => unreachable!("expanded before lowering"),
         }
@@ -340,8 +345,8 @@ impl Lowering<'_> {
         arguments: &[Value],
     ) -> Handle<Expression> {
         let op = if symbol == "<<" { BinaryOperator::ShiftLeft } else { BinaryOperator::ShiftRight };
-        let count = match frame.function.operation(arguments[1]) {
-            Operation::Constant(c) if c.width() == 1 => body.literal(Literal::U32(c.int(0) as u32)),
+        let count = match frame.constant(arguments[1]) {
+            Some(c) if c.width() == 1 => body.literal(Literal::U32(c.int(0) as u32)),
             _ => body.convert(operands[1], ScalarKind::Uint),
         };
         body.binary(op, operands[0], count)

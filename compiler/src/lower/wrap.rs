@@ -1,12 +1,12 @@
 //! The thin wrapper around a texture's plain function: where globals are read.
 
-use super::function::Body;
+use super::body::Body;
 use super::types::{Types, numeric, scalar};
 use super::{Lowering, Member};
-use crate::graph::{ParamId, Scalar, Type, ViewId};
+use crate::graph::{Scalar, Type, ViewId};
 use crate::manifest::{Form, Source};
 use crate::naming::{Scope, camel_case};
-use naga::{AddressSpace, Binding, Expression, GlobalVariable, Handle, Literal, Span, Statement};
+use naga::{AddressSpace, Binding, Expression, GlobalVariable, Handle, Literal, Span};
 use rustc_hash::FxHashMap;
 
 /// The globals of the module.
@@ -100,13 +100,7 @@ impl Lowering<'_> {
     }
 
     /// A member of the uniform block, loaded.
-    fn member(
-        &mut self,
-        body: &mut Body,
-        globals: &Globals,
-        scope: &mut Scope,
-        name: &str,
-    ) -> Handle<Expression> {
+    fn member(&mut self, body: &mut Body, globals: &Globals, name: &str) -> Handle<Expression> {
         let Some(UniformBlock { variable, members }) = &globals.block else {
             unreachable!("a param is read from a block")
         };
@@ -115,7 +109,7 @@ impl Lowering<'_> {
         let base = body.add(Expression::GlobalVariable(*variable));
         let pointer = body.add(Expression::AccessIndex { base, index: index as u32 });
         let loaded = body.add(Expression::Load { pointer });
-        body.name(loaded, self.names.placeholder(scope.name(name)));
+        body.name(&mut self.names, loaded, name);
         if ty.scalar() != Some(Scalar::Bool) {
             return loaded;
         }
@@ -128,16 +122,14 @@ impl Lowering<'_> {
         &mut self,
         body: &mut Body,
         globals: &Globals,
-        scope: &mut Scope,
         inputs: Vec<Handle<Expression>>,
-    ) -> (Handle<Expression>, FxHashMap<u32, String>) {
+    ) -> Handle<Expression> {
         let mut arguments = inputs;
-        let Some(entry) = self.functions.last() else { unreachable!("a graph has an entry") };
-        let (handle, captures) = (entry.handle, entry.captures.clone());
-        let params: Vec<ParamId> = captures.params.iter().copied().collect();
-        for id in params {
+        let entry = self.graph.entry();
+        let captures = self.captures[entry.0 as usize].clone();
+        for id in &captures.params {
             let name = self.graph.params[id.0 as usize].name.clone();
-            arguments.push(self.member(body, globals, scope, &name));
+            arguments.push(self.member(body, globals, &name));
         }
         for id in &captures.views {
             let (texture, sampler) = globals.views[id];
@@ -145,9 +137,7 @@ impl Lowering<'_> {
                 arguments.push(body.add(Expression::GlobalVariable(variable)));
             }
         }
-        let (result, number) = body.call(handle, arguments);
-        let name = scope.name("result");
-        (result, [(number, name)].into_iter().collect())
+        body.call(self.callee(entry).handle, arguments, "result")
     }
 
     /// `@fragment fn NAME(@location(0) uv: vec2<f32>) -> …`, every output widened to four floats.
@@ -182,17 +172,17 @@ impl Lowering<'_> {
         };
         let binding = (!several).then(|| at_location(0, true));
         function.result = Some(naga::FunctionResult { ty: result, binding });
-        let mut body = Body::new(&mut function);
+        let mut body = Body::new(&mut function, scope);
         let inputs: Vec<Handle<Expression>> = entry
             .inputs
             .iter()
             .zip(varying)
             .map(|(slot, argument)| match argument {
                 Some(argument) => body.add(Expression::FunctionArgument(argument)),
-                None => self.member(&mut body, globals, &mut scope, &slot.name),
+                None => self.member(&mut body, globals, &slot.name),
             })
             .collect();
-        let (value, results) = self.call_plain(&mut body, globals, &mut scope, inputs);
+        let value = self.call_plain(&mut body, globals, inputs);
         let outputs: Vec<Handle<Expression>> = entry
             .outputs
             .iter()
@@ -210,8 +200,7 @@ impl Lowering<'_> {
             [single] => *single,
             _ => body.add(Expression::Compose { ty: result, components: outputs }),
         };
-        body.finish(Statement::Return { value: Some(value) });
-        self.results.push(results);
+        self.results.push(body.finish(value));
         self.module.entry_points.push(naga::EntryPoint {
             name: self.names.placeholder(name.to_owned()),
             stage: naga::ShaderStage::Fragment,
@@ -249,7 +238,7 @@ impl Lowering<'_> {
         }
         let ty = self.structure(&camel_case(&format!("{}_outputs", self.prefix)), outputs);
         function.result = Some(naga::FunctionResult { ty, binding: None });
-        let mut body = Body::new(&mut function);
+        let mut body = Body::new(&mut function, scope);
         let base = takes_inputs.then(|| body.add(Expression::FunctionArgument(0)));
         let members: Vec<Handle<Expression>> = base
             .iter()
@@ -258,7 +247,7 @@ impl Lowering<'_> {
             .into_iter()
             .map(|(base, index)| body.add(Expression::AccessIndex { base, index }))
             .collect();
-        let (value, results) = self.call_plain(&mut body, globals, &mut scope, members);
+        let value = self.call_plain(&mut body, globals, members);
         let components = if entry.outputs.len() > 1 {
             (0..entry.outputs.len() as u32)
                 .map(|index| body.add(Expression::AccessIndex { base: value, index }))
@@ -267,8 +256,7 @@ impl Lowering<'_> {
             vec![value]
         };
         let value = body.add(Expression::Compose { ty, components });
-        body.finish(Statement::Return { value: Some(value) });
-        self.results.push(results);
+        self.results.push(body.finish(value));
         self.module.functions.append(function, Span::UNDEFINED);
     }
 }

@@ -1,0 +1,260 @@
+//! How far the lowering of one function of the graph has come.
+
+use super::body::Variable;
+use super::fold::takes_all_steps;
+use crate::graph::regions::Regions;
+use crate::graph::{Constant, Function, Operation, Type, Value};
+use crate::intrinsic::{MULTIPLY, MULTIPLY_INT};
+use naga::{Expression, Handle};
+use rustc_hash::FxHashMap;
+use std::rc::Rc;
+
+/// Unnamed operations inside each other at most.
+const MAX_NEST: u8 = 16;
+
+/// What a function of the graph is being lowered with. Several can be in the making inside one naga
+/// function: the steps of folds stand where the folds stand.
+pub struct Frame<'g> {
+    pub function: &'g Function,
+    pub regions: Rc<Regions>,
+    /// Lowered values.
+    values: Vec<Option<Handle<Expression>>>,
+    /// How deep the unnamed nest of each is: 0 for what is named or needs no name.
+    nest: Vec<u8>,
+    uses: Vec<u32>,
+    /// The accumulators of folds after the last step.
+    pub folds: FxHashMap<Value, Vec<Handle<Expression>>>,
+    /// Choices that are made right in the variable of the choice around them.
+    pub targets: FxHashMap<Value, Variable>,
+    /// Inputs that are known numbers.
+    known: FxHashMap<Value, Constant>,
+    /// Of a fold's step: values that have the name of the accumulator they are the next of.
+    next: FxHashMap<Value, String>,
+}
+
+impl<'g> Frame<'g> {
+    pub fn new(function: &'g Function, regions: Regions) -> Frame<'g> {
+        Frame {
+            function,
+            uses: uses(function, &regions),
+            regions: Rc::new(regions),
+            values: vec![None; function.values.len()],
+            nest: vec![0; function.values.len()],
+            folds: FxHashMap::default(),
+            targets: FxHashMap::default(),
+            known: FxHashMap::default(),
+            next: FxHashMap::default(),
+        }
+    }
+
+    /// The frame of a fold's step: what the author calls as the accumulator is called is not that
+    /// yet, only its next value.
+    pub fn of_step(function: &'g Function, regions: Regions) -> Frame<'g> {
+        let mut frame = Frame::new(function, regions);
+        for (slot, value) in &function.outputs {
+            if function.names.get(value) == Some(&slot.name) {
+                frame.next.insert(*value, format!("next_{}", slot.name));
+            }
+        }
+        frame
+    }
+
+    /// Says what the function's inputs are, in order.
+    pub fn bind(&mut self, inputs: &[Argument]) {
+        for (value, operation) in self.function.iter() {
+            if let Operation::Input(i) = operation
+                && let Some(input) = inputs.get(*i as usize)
+            {
+                self.values[value.0 as usize] = Some(input.handle);
+                self.known.extend(input.known.map(|known| (value, known)));
+            }
+        }
+    }
+
+    /// A value as the argument of another function.
+    pub fn argument(&self, value: Value) -> Argument {
+        Argument { handle: self.get(value), known: self.constant(value) }
+    }
+
+    /// A lowered value. Operands come before what uses them, so it is there.
+    pub fn get(&self, value: Value) -> Handle<Expression> {
+        match self.values[value.0 as usize] {
+            Some(handle) => handle,
+            None => unreachable!("a value is lowered after its operands"),
+        }
+    }
+
+    pub fn set(&mut self, value: Value, handle: Handle<Expression>) {
+        self.values[value.0 as usize] = Some(handle);
+    }
+
+    /// The number, if it is known.
+    pub fn constant(&self, value: Value) -> Option<Constant> {
+        match self.function.operation(value) {
+            Operation::Constant(constant) => Some(*constant),
+            _ => self.known.get(&value).copied(),
+        }
+    }
+
+    /// Whether a value is still to be lowered.
+    pub fn is_wanted(&self, value: Value) -> bool {
+        self.uses[value.0 as usize] > 0 && self.values[value.0 as usize].is_none()
+    }
+
+    /// Whether only one place in the text reads a value.
+    pub fn is_used_once(&self, value: Value) -> bool {
+        self.uses[value.0 as usize] == 1
+    }
+
+    /// Whether a value is written out where it is used, with its operands.
+    pub fn is_written_out(&self, value: Value) -> bool {
+        self.nest[value.0 as usize] > 0
+    }
+
+    /// Whether a lowered value is to be named, and how; notes how deep it nests otherwise.
+    pub fn wish(&mut self, value: Value) -> Option<String> {
+        let operation = self.function.operation(value);
+        let mut nest = 0;
+        operation.for_operands(|v| nest = nest.max(self.nest[v.0 as usize]));
+        let nest = nest.saturating_add(1);
+        let author = self.author(value);
+        let uses = self.uses[value.0 as usize];
+        let named = !self.needs_no_name(operation)
+            && (author.is_some()
+                || is_eager(operation)
+                || nest >= MAX_NEST
+                || (!is_cheap(operation) && uses > 1));
+        self.nest[value.0 as usize] = if named || self.needs_no_name(operation) { 0 } else { nest };
+        named.then(|| self.name(value))
+    }
+
+    /// What the author calls a value.
+    pub fn author(&self, value: Value) -> Option<&'g str> {
+        let author = self.function.names.get(&value).map(String::as_str);
+        author.filter(|_| !self.next.contains_key(&value))
+    }
+
+    /// What a value is called, if it has to have a name.
+    pub fn name(&self, value: Value) -> String {
+        let next = self.next.get(&value).map(String::as_str);
+        let hint = || hint(self.function.operation(value));
+        self.author(value).or(next).unwrap_or_else(hint).to_owned()
+    }
+
+    /// Known, or held by a name or variable of its own.
+    fn needs_no_name(&self, operation: &Operation) -> bool {
+        match operation {
+            Operation::Constant(_)
+            | Operation::Param(_)
+            | Operation::View(_)
+            | Operation::Input(_)
+            | Operation::Call(..)
+            | Operation::Fold(_) => true,
+            Operation::Output(of, _) => matches!(self.function.operation(*of), Operation::Fold(_)),
+            _ => false,
+        }
+    }
+}
+
+/// What a function is given for an input.
+#[derive(Clone, Copy)]
+pub struct Argument {
+    pub handle: Handle<Expression>,
+    /// The number, if it is known.
+    pub known: Option<Constant>,
+}
+
+/// Written again at each use rather than named.
+fn is_cheap(operation: &Operation) -> bool {
+    matches!(operation, Operation::Extract(..) | Operation::Output(..))
+}
+
+/// Named even if used once: the text writer would.
+fn is_eager(operation: &Operation) -> bool {
+    matches!(operation, Operation::Sample { .. } | Operation::Texel { .. } | Operation::Derivative(..))
+}
+
+/// What a value without a name of its own is called.
+fn hint(operation: &Operation) -> &str {
+    match operation {
+        Operation::Sample { .. } => "sampled",
+        Operation::Texel { .. } => "texel",
+        Operation::Size(_) => "size",
+        Operation::Select(..) => "chosen",
+        Operation::Compose(_) => "vector",
+        Operation::Lookup(..) => "entry",
+        Operation::Derivative(..) => "slope",
+        _ => "t",
+    }
+}
+
+/// How often each value is written. A factor that is a scalar in every component is written as
+/// that scalar; a branch writes its condition once; a loop counts as many times.
+fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
+    let mut uses = vec![0; function.values.len()];
+    for (_, value) in &function.outputs {
+        uses[value.0 as usize] += 1;
+    }
+    for (value, operation) in function.iter().rev() {
+        let own = uses[value.0 as usize];
+        if own == 0 {
+            continue;
+        }
+        let mut add = |v: Value, times: u32| uses[v.0 as usize] += times;
+        match operation {
+            Operation::Builtin(MULTIPLY | MULTIPLY_INT, factors) => {
+                written_factors(function, factors).into_iter().for_each(|v| add(v, 1));
+            }
+            Operation::Select(condition, yes, no) => {
+                let first = regions.branch(value).is_none_or(|branch| branch.choices[0] == value);
+                add(*condition, u32::from(first));
+                [*yes, *no].into_iter().for_each(|v| add(v, 1));
+            }
+            Operation::Fold(fold) => {
+                fold.starts.iter().for_each(|v| add(*v, 1));
+                fold.captures.iter().for_each(|v| add(*v, 2));
+                add(fold.steps, if takes_all_steps(function, fold) { 2 } else { 1 });
+            }
+            Operation::Extract(vector, _) if !function.names.contains_key(&value) => add(*vector, own),
+            _ => operation.for_operands(|v| add(v, 1)),
+        }
+    }
+    uses
+}
+
+/// The factors of a product as they are written.
+fn written_factors(function: &Function, factors: &[Value]) -> Vec<Value> {
+    let scalars: Vec<Option<Splat>> = factors.iter().map(|v| splat_of(function, *v)).collect();
+    match (factors, scalars.as_slice()) {
+        ([_, vector], [Some(Splat::Value(scalar)), None]) => vec![*scalar, *vector],
+        ([vector, _], [None, Some(Splat::Value(scalar))]) => vec![*vector, *scalar],
+        _ => factors.to_vec(),
+    }
+}
+
+/// A scalar that stands in every component of a vector.
+#[derive(Clone, Copy)]
+pub enum Splat {
+    /// A value.
+    Value(Value),
+    /// A known number.
+    Constant(Constant),
+}
+
+/// The scalar of a vector that has one in every component.
+pub fn splat_of(function: &Function, vector: Value) -> Option<Splat> {
+    match function.operation(vector) {
+        Operation::Constant(c) if c.width() > 1 && c.bits().iter().all(|bits| *bits == c.bits()[0]) => {
+            Some(Splat::Constant(c.component(0)))
+        }
+        Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => {
+            Some(Splat::Value(parts[0]))
+        }
+        _ => None,
+    }
+}
+
+/// Whether a view comes with a sampler.
+pub fn has_sampler(ty: Type) -> bool {
+    matches!(ty, Type::View(view) if view.texel == crate::graph::Texel::Sampled)
+}
