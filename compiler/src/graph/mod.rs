@@ -9,6 +9,7 @@ mod builder;
 mod constant;
 mod dump;
 pub mod evaluate;
+pub mod regions;
 
 pub use builder::Builder;
 pub use constant::Constant;
