@@ -38,6 +38,12 @@ pub fn fold(function: &Function, operation: &Operation) -> Option<Folded> {
             let holds = known(function, *condition).is_none_or(|c| c.bool(0));
             Some(Folded::Value(if holds { *yes } else { *no }))
         }
+        Operation::Output(of, i) => match function.operation(*of) {
+            Operation::Fold(f) if f.most == 0 || known(function, f.steps).is_some_and(|c| c.int(0) <= 0) => {
+                f.starts.get(*i as usize).map(|start| Folded::Value(*start))
+            }
+            _ => None,
+        },
         _ => None,
     }
 }

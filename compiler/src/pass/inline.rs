@@ -1,42 +1,163 @@
 //! A node written as a single expression is taken over by its callers; any other stays a function.
-//! Functions that nobody calls any more are dropped.
+//! A fold of a few known steps is written out: its body is taken over once for each, with the
+//! number of the step a constant, so a one-octave fBm has no loop. Functions that nothing needs are
+//! dropped.
+//!
+//! What is taken over is decided for whole functions beforehand (see [`Plan`]), folds are decided
+//! when they are met: only then it is known what their steps have become.
 
-use crate::graph::{Builder, Function, FunctionId, Graph, Operation, Value};
+use crate::graph::{Builder, Constant, Fold, Function, FunctionId, Graph, Operation, Value};
 use rustc_hash::FxHashMap;
 
-/// Takes single expressions over, whatever their depth.
+/// Folds inside each other in one function at most, where that is a matter of taking over. Blocks
+/// of a shader nest a little deeper: there is room for branches.
+const MOST_NESTED: u32 = 24;
+/// Values that taking over may add to a graph: expressions that call each other twice would double
+/// it again and again.
+const MOST_TAKEN_OVER: u64 = 200_000;
+/// Steps that are written out at most.
+const MOST_STEPS: u32 = 4;
+/// Values that written-out steps may add to a graph.
+const MOST_WRITTEN_OUT: usize = 100_000;
+
+/// Takes single expressions over and writes short folds out, whatever their depth.
 pub fn run(graph: Graph) -> Graph {
-    let kept = reachable(&graph);
-    let mut ids: Vec<Option<FunctionId>> = vec![None; graph.functions.len()];
-    let mut functions = Vec::new();
+    let plan = Plan::of(&graph);
+    let mut made = Made { ids: vec![None; graph.functions.len()], functions: Vec::new() };
+    let mut allowance = MOST_WRITTEN_OUT;
     for (i, function) in graph.functions.iter().enumerate() {
-        let entry = i + 1 == graph.functions.len();
-        if kept[i] && (entry || !function.inline) {
-            functions.push(expanded(&graph, function, &ids));
-            ids[i] = Some(FunctionId(functions.len() as u32 - 1));
+        if plan.fates[i] == Fate::Kept {
+            let expanding = Expanding {
+                graph: &graph,
+                made: &made,
+                builder: Builder::new(function.name.clone()),
+                allowance: &mut allowance,
+            };
+            let expanded = expanding.run(function);
+            made.ids[i] = Some(FunctionId(made.functions.len() as u32));
+            made.functions.push(expanded);
         }
     }
-    Graph { functions, ..graph }
+    Graph { functions: made.functions, ..graph }
 }
 
-/// Which functions the entry calls, through any number of calls.
-fn reachable(graph: &Graph) -> Vec<bool> {
-    let mut reached = vec![false; graph.functions.len()];
-    if let Some(entry) = reached.last_mut() {
-        *entry = true;
-    }
-    // Callees come first, so one walk from the end meets every caller before its callees.
-    for i in (0..graph.functions.len()).rev() {
-        if !reached[i] {
-            continue;
-        }
-        for operation in &graph.functions[i].values {
-            if let Operation::Call(callee, _) = operation {
-                reached[callee.0 as usize] = true;
+/// What becomes of a function.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    /// Nothing needs it.
+    Dropped,
+    /// It stays a function.
+    Kept,
+    /// All who call it take it over.
+    TakenOver,
+}
+
+/// What becomes of every function.
+struct Plan {
+    fates: Vec<Fate>,
+}
+
+/// How a function is needed, as far as its users have been met.
+#[derive(Clone, Copy, Default)]
+struct Need {
+    called: bool,
+    /// The body or the condition of a fold: it stands in the function that the fold stands in.
+    folded: bool,
+    /// Loops around it there.
+    loops: u32,
+    /// How often it would be taken over.
+    copies: u64,
+}
+
+impl Plan {
+    /// Users are met before what they use.
+    fn of(graph: &Graph) -> Plan {
+        let nests = nests(graph);
+        let mut needs = vec![Need::default(); graph.functions.len()];
+        let mut fates = vec![Fate::Dropped; graph.functions.len()];
+        let mut allowance = MOST_TAKEN_OVER;
+        let entry = graph.functions.len().saturating_sub(1);
+        for (i, function) in graph.functions.iter().enumerate().rev() {
+            let need = needs[i];
+            if !need.called && !need.folded && i != entry {
+                continue;
             }
+            let cost = need.copies.saturating_mul(function.values.len() as u64);
+            let over = function.inline && !need.folded && i != entry;
+            let over = over && need.loops + nests[i] <= MOST_NESTED && cost <= allowance;
+            fates[i] = if over { Fate::TakenOver } else { Fate::Kept };
+            allowance -= if over { cost } else { 0 };
+            let (loops, copies) = match (over, need.folded) {
+                (true, _) => (need.loops, need.copies),
+                (false, true) => (need.loops, 1),
+                (false, false) => (0, 1),
+            };
+            spread(function, loops, copies, &mut needs);
+        }
+        Plan { fates }
+    }
+}
+
+/// Notes what a function needs.
+fn spread(function: &Function, loops: u32, copies: u64, needs: &mut [Need]) {
+    for operation in &function.values {
+        match operation {
+            Operation::Call(callee, _) => {
+                let need = &mut needs[callee.0 as usize];
+                need.called = true;
+                need.loops = need.loops.max(loops);
+                need.copies = need.copies.saturating_add(copies);
+            }
+            Operation::Fold(fold) => {
+                for part in [Some(fold.body), fold.condition].into_iter().flatten() {
+                    let need = &mut needs[part.0 as usize];
+                    need.folded = true;
+                    need.loops = need.loops.max(loops + 1);
+                }
+            }
+            _ => {}
         }
     }
-    reached
+}
+
+/// How deep folds nest in each function once all single expressions are taken over.
+fn nests(graph: &Graph) -> Vec<u32> {
+    let mut nests: Vec<u32> = Vec::with_capacity(graph.functions.len());
+    for function in &graph.functions {
+        let nest = function.values.iter().map(|operation| match operation {
+            Operation::Call(callee, _) if graph.function(*callee).inline => nests[callee.0 as usize],
+            Operation::Fold(fold) => {
+                let parts = [Some(fold.body), fold.condition].into_iter().flatten();
+                1 + parts.map(|part| nests[part.0 as usize]).max().unwrap_or(0)
+            }
+            _ => 0,
+        });
+        let nest = nest.max().unwrap_or(0);
+        nests.push(nest);
+    }
+    nests
+}
+
+/// The functions that are done.
+struct Made {
+    functions: Vec<Function>,
+    /// Where a function of the graph went.
+    ids: Vec<Option<FunctionId>>,
+}
+
+impl Made {
+    fn id(&self, old: FunctionId) -> Option<FunctionId> {
+        self.ids.get(old.0 as usize).copied().flatten()
+    }
+
+    /// What a condition always gives, if that is known.
+    fn always(&self, condition: FunctionId) -> Option<bool> {
+        let function = self.functions.get(self.id(condition)?.0 as usize)?;
+        match function.operation(function.outputs.first()?.1) {
+            Operation::Constant(holds) => Some(holds.bool(0)),
+            _ => None,
+        }
+    }
 }
 
 /// A function whose operations are being copied.
@@ -45,73 +166,176 @@ struct Copying<'a> {
     arguments: Vec<Value>,
     next: usize,
     values: Vec<Value>,
-    /// The outputs of calls that were taken over, by the call.
+    /// The outputs of calls and folds that were taken over, by the call or fold.
     outputs: FxHashMap<Value, Vec<Value>>,
+    /// For a step of a fold those that follow.
+    steps: Option<Steps>,
+    /// It stands in a step that is written out.
+    written_out: bool,
+    /// It keeps its names; those of what is called would hide the caller's own.
+    named: bool,
+}
+
+/// The steps of a fold that are still to be written out.
+struct Steps {
+    next: u32,
+    all: u32,
+    captures: Vec<Value>,
 }
 
 impl<'a> Copying<'a> {
     fn new(function: &'a Function, arguments: Vec<Value>) -> Copying<'a> {
-        Copying { function, arguments, next: 0, values: Vec::new(), outputs: FxHashMap::default() }
+        Copying {
+            function,
+            arguments,
+            next: 0,
+            values: Vec::with_capacity(function.values.len()),
+            outputs: FxHashMap::default(),
+            steps: None,
+            written_out: false,
+            named: true,
+        }
     }
 
     fn value(&self, old: Value) -> Value {
         self.values.get(old.0 as usize).copied().unwrap_or(Value(0))
     }
+
+    /// The value being copied stands for what its outputs will be; only they are read.
+    fn stand_in(&mut self) {
+        self.values.push(Value(0));
+    }
+
+    /// The outputs of the call or fold that was copied last.
+    fn deliver(&mut self, outputs: Vec<Value>) {
+        self.outputs.insert(Value(self.values.len() as u32 - 1), outputs);
+    }
 }
 
-/// A function with the calls of single expressions replaced by them.
-fn expanded(graph: &Graph, function: &Function, ids: &[Option<FunctionId>]) -> Function {
-    let mut builder = Builder::new(function.name.clone());
-    let inputs = function.inputs.iter().map(|slot| builder.input(slot.name.clone(), slot.ty)).collect();
-    let mut stack = vec![Copying::new(function, inputs)];
-    while let Some(top) = stack.last_mut() {
-        let Some(operation) = top.function.values.get(top.next) else {
-            let outputs: Vec<Value> =
-                top.function.outputs.iter().map(|(_, value)| top.value(*value)).collect();
-            stack.pop();
-            match stack.last_mut() {
-                Some(caller) => {
-                    let call = Value(caller.values.len() as u32 - 1);
-                    caller.outputs.insert(call, outputs);
-                }
-                None => function.outputs.iter().zip(outputs).for_each(|((slot, _), value)| {
-                    builder.output(slot.name.clone(), value);
-                }),
-            }
-            continue;
-        };
-        let old = Value(top.next as u32);
-        top.next += 1;
-        builder.set_place(top.function.places[old.0 as usize]);
-        match operation {
-            Operation::Input(i) => {
-                let argument = top.arguments.get(*i as usize).copied().unwrap_or(Value(0));
-                top.values.push(argument);
-            }
-            Operation::Call(callee, arguments) if ids[callee.0 as usize].is_none() => {
-                let arguments = arguments.iter().map(|v| top.value(*v)).collect();
-                // Stands for the call; only its outputs are read.
-                top.values.push(Value(0));
-                stack.push(Copying::new(graph.function(*callee), arguments));
+/// A function in the making.
+struct Expanding<'a, 'b> {
+    graph: &'a Graph,
+    made: &'b Made,
+    builder: Builder,
+    /// Values that written-out steps may still add.
+    allowance: &'b mut usize,
+}
+
+impl<'a> Expanding<'a, '_> {
+    fn run(mut self, function: &'a Function) -> Function {
+        let inputs =
+            function.inputs.iter().map(|slot| self.builder.input(slot.name.clone(), slot.ty)).collect();
+        let mut stack = vec![Copying::new(function, inputs)];
+        while let Some(top) = stack.last_mut() {
+            if let Some(operation) = top.function.values.get(top.next) {
+                let inner = self.copy(top, operation);
+                stack.extend(inner);
                 continue;
             }
-            Operation::Output(call, i) if top.outputs.contains_key(call) => {
-                let value = top.outputs.get(call).and_then(|outputs| outputs.get(*i as usize)).copied();
-                top.values.push(value.unwrap_or(Value(0)));
-            }
-            _ => {
-                let mut copy = operation.map_operands(|v| top.value(v));
-                if let Operation::Call(callee, _) = &mut copy {
-                    *callee = ids[callee.0 as usize].unwrap_or(*callee);
+            let outputs = top.function.outputs.iter().map(|(_, value)| top.value(*value)).collect();
+            let done =
+                stack.pop().and_then(|done| done.steps.map(|steps| (done.function, steps, done.named)));
+            match (done, stack.last_mut()) {
+                (Some((body, steps, named)), _) if steps.next < steps.all => {
+                    stack.push(self.step(body, outputs, steps, named));
                 }
-                let value = builder.push(copy, top.function.types[old.0 as usize]);
-                top.values.push(value);
+                (_, Some(caller)) => caller.deliver(outputs),
+                (_, None) => self.outputs(function, outputs),
             }
         }
-        // Names of what is taken over would hide the caller's own.
-        let value = top.value(old);
-        let name = top.function.names.get(&old).filter(|_| stack.len() == 1);
-        name.into_iter().for_each(|name| builder.name(value, name));
+        self.builder.finish()
     }
-    builder.finish()
+
+    fn outputs(&mut self, function: &Function, values: Vec<Value>) {
+        for ((slot, _), value) in function.outputs.iter().zip(values) {
+            self.builder.output(slot.name.clone(), value);
+        }
+    }
+
+    /// Copies one operation, or begins what is taken over in its place.
+    fn copy(&mut self, top: &mut Copying<'a>, operation: &'a Operation) -> Option<Copying<'a>> {
+        let old = Value(top.next as u32);
+        top.next += 1;
+        self.builder.set_place(top.function.places[old.0 as usize]);
+        if top.written_out {
+            *self.allowance = self.allowance.saturating_sub(1);
+        }
+        let value = match operation {
+            Operation::Input(i) => top.arguments.get(*i as usize).copied().unwrap_or(Value(0)),
+            Operation::Output(of, i) if top.outputs.contains_key(of) => {
+                let outputs = top.outputs.get(of);
+                outputs.and_then(|outputs| outputs.get(*i as usize)).copied().unwrap_or(Value(0))
+            }
+            Operation::Call(callee, arguments) if self.made.id(*callee).is_none() => {
+                let arguments = arguments.iter().map(|v| top.value(*v)).collect();
+                top.stand_in();
+                let callee = Copying::new(self.graph.function(*callee), arguments);
+                return Some(Copying { named: false, written_out: top.written_out, ..callee });
+            }
+            Operation::Call(callee, arguments) => {
+                let callee = self.made.id(*callee).unwrap_or(*callee);
+                let arguments = arguments.iter().map(|v| top.value(*v)).collect();
+                self.builder.push(Operation::Call(callee, arguments), top.function.ty(old))
+            }
+            Operation::Fold(fold) => return self.fold(top, old, fold),
+            _ => self.builder.push(operation.map_operands(|v| top.value(v)), top.function.ty(old)),
+        };
+        top.values.push(value);
+        if let Some(name) = top.function.names.get(&old).filter(|_| top.named) {
+            self.builder.name(value, name);
+        }
+        None
+    }
+
+    fn fold(&mut self, top: &mut Copying<'a>, old: Value, fold: &Fold) -> Option<Copying<'a>> {
+        let mut new = fold.map_operands(|v| top.value(v));
+        let always = fold.condition.and_then(|condition| self.made.always(condition));
+        new.condition = fold.condition.filter(|_| always != Some(true));
+        let steps = match self.builder.as_constant(new.steps) {
+            _ if always == Some(false) => Some(0),
+            Some(steps) => Some(u32::try_from(steps.int(0)).unwrap_or(0).min(new.most)),
+            None => None,
+        };
+        let body = self.graph.function(fold.body);
+        let short = |n: &u32| {
+            *n == 0
+                || new.condition.is_none()
+                    && *n <= MOST_STEPS
+                    && *n as usize * body.values.len() <= *self.allowance
+        };
+        match steps.filter(short) {
+            Some(0) => {
+                top.stand_in();
+                top.deliver(new.starts);
+                None
+            }
+            Some(all) => {
+                top.stand_in();
+                let steps = Steps { next: 0, all, captures: new.captures };
+                Some(self.step(body, new.starts, steps, top.named))
+            }
+            None => {
+                new.body = self.made.id(new.body).unwrap_or(new.body);
+                new.condition = new.condition.and_then(|condition| self.made.id(condition));
+                let ty = top.function.ty(old);
+                top.values.push(self.builder.push(Operation::Fold(Box::new(new)), ty));
+                None
+            }
+        }
+    }
+
+    /// Begins the next step of a fold that is written out.
+    fn step(
+        &mut self,
+        body: &'a Function,
+        accumulators: Vec<Value>,
+        steps: Steps,
+        named: bool,
+    ) -> Copying<'a> {
+        let mut arguments = accumulators;
+        arguments.push(self.builder.constant(Constant::ints(&[steps.next as i32])));
+        arguments.extend(&steps.captures);
+        let steps = Steps { next: steps.next + 1, ..steps };
+        Copying { steps: Some(steps), written_out: true, named, ..Copying::new(body, arguments) }
+    }
 }

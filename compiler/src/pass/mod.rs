@@ -5,6 +5,7 @@ pub mod differentiate;
 pub mod expand;
 pub mod fold_constants;
 pub mod inline;
+mod liveness;
 pub mod remove_dead;
 
 use crate::graph::Graph;

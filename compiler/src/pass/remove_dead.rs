@@ -1,138 +1,121 @@
 //! What no output needs is removed: values, inputs of functions with their arguments, outputs that
-//! no caller reads, functions that nobody calls.
+//! no caller reads, accumulators and captures of folds, functions that nobody calls.
 
-use crate::graph::{Builder, Function, FunctionId, Graph, Operation, Value};
+use super::liveness::Liveness;
+use crate::graph::{Builder, Fold, Function, FunctionId, Graph, Operation, Value};
 
 /// Keeps what the entry's outputs need. The entry keeps its inputs: they are the contract.
 pub fn run(graph: Graph) -> Graph {
-    let wanted = wanted_outputs(&graph);
-    let mut kept: Vec<Option<Kept>> = Vec::with_capacity(graph.functions.len());
+    let mut live = Liveness::of(&graph);
+    if let Some(inputs) = live.inputs.last_mut() {
+        inputs.fill(true);
+    }
+    let places: Vec<Vec<u32>> = live.outputs.iter().map(|live| places(live)).collect();
+    let entry = graph.functions.len().saturating_sub(1);
+    let mut ids = vec![None; graph.functions.len()];
     let mut functions = Vec::new();
-    for (i, function) in graph.functions.iter().enumerate() {
-        let entry = i + 1 == graph.functions.len();
-        if !entry && !wanted[i].contains(&true) {
-            kept.push(None);
-            continue;
+    for i in 0..graph.functions.len() {
+        if i == entry || live.outputs[i].contains(&true) {
+            let values = Vec::with_capacity(graph.functions[i].values.len());
+            let removing = Removing { graph: &graph, live: &live, places: &places, ids: &ids, values };
+            functions.push(removing.run(i));
+            ids[i] = Some(FunctionId(functions.len() as u32 - 1));
         }
-        let live = live_values(function, &wanted[i], |callee, input| {
-            kept[callee.0 as usize].as_ref().is_none_or(|kept| kept.inputs[input])
-        });
-        let used =
-            |i: usize| function.iter().any(|(v, op)| *op == Operation::Input(i as u32) && live[v.0 as usize]);
-        let inputs: Vec<bool> = (0..function.inputs.len()).map(|i| entry || used(i)).collect();
-        functions.push(rebuilt(function, &live, &inputs, &wanted[i], &kept));
-        let id = FunctionId(functions.len() as u32 - 1);
-        kept.push(Some(Kept { id, inputs, outputs: wanted[i].clone() }));
     }
     Graph { functions, ..graph }
 }
 
-/// What is left of a function.
-struct Kept {
-    id: FunctionId,
-    inputs: Vec<bool>,
-    outputs: Vec<bool>,
+/// Where each output comes to stand when the dead ones are gone.
+fn places(live: &[bool]) -> Vec<u32> {
+    let mut next = 0;
+    let mut place = |live: &bool| {
+        let place = next;
+        next += u32::from(*live);
+        place
+    };
+    live.iter().map(|live| place(live)).collect()
 }
 
-/// For each function the outputs that are read, callers before callees.
-fn wanted_outputs(graph: &Graph) -> Vec<Vec<bool>> {
-    let mut wanted: Vec<Vec<bool>> = graph.functions.iter().map(|f| vec![false; f.outputs.len()]).collect();
-    if let Some(entry) = wanted.last_mut() {
-        entry.fill(true);
-    }
-    for i in (0..graph.functions.len()).rev() {
-        let function = &graph.functions[i];
-        let live = live_values(function, &wanted[i], |_, _| true);
-        for (_, operation) in function.iter().filter(|(v, _)| live[v.0 as usize]) {
-            if let Operation::Output(call, output) = operation
-                && let Operation::Call(callee, _) = function.operation(*call)
-            {
-                wanted[callee.0 as usize][*output as usize] = true;
+/// A function being made without what is dead.
+struct Removing<'a> {
+    graph: &'a Graph,
+    live: &'a Liveness,
+    places: &'a [Vec<u32>],
+    ids: &'a [Option<FunctionId>],
+    values: Vec<Value>,
+}
+
+impl Removing<'_> {
+    fn run(mut self, place: usize) -> Function {
+        let function = &self.graph.functions[place];
+        let mut builder = Builder::new(function.name.clone());
+        let inputs: Vec<Value> = function
+            .inputs
+            .iter()
+            .zip(&self.live.inputs[place])
+            .map(|(slot, live)| if *live { builder.input(slot.name.clone(), slot.ty) } else { Value(0) })
+            .collect();
+        for (old, operation) in function.iter() {
+            let value = match operation {
+                _ if !self.live.is_live(place, old) => Value(0),
+                Operation::Input(i) => inputs.get(*i as usize).copied().unwrap_or(Value(0)),
+                _ => {
+                    builder.set_place(function.places[old.0 as usize]);
+                    let value = builder.push(self.adapted(function, operation), function.ty(old));
+                    if let Some(name) = function.names.get(&old) {
+                        builder.name(value, name);
+                    }
+                    value
+                }
+            };
+            self.values.push(value);
+        }
+        for ((slot, value), live) in function.outputs.iter().zip(&self.live.outputs[place]) {
+            if *live {
+                builder.output(slot.name.clone(), self.values[value.0 as usize]);
             }
         }
+        builder.finish()
     }
-    wanted
-}
 
-/// Which values the wanted outputs need.
-fn live_values(function: &Function, wanted: &[bool], reads: impl Fn(FunctionId, usize) -> bool) -> Vec<bool> {
-    let mut live = vec![false; function.values.len()];
-    for ((_, value), wanted) in function.outputs.iter().zip(wanted) {
-        live[value.0 as usize] |= *wanted;
+    fn id(&self, old: FunctionId) -> FunctionId {
+        self.ids.get(old.0 as usize).copied().flatten().unwrap_or(old)
     }
-    for (value, operation) in function.iter().rev() {
-        if !live[value.0 as usize] {
-            continue;
-        }
+
+    /// The new values of those operands that go to live inputs.
+    fn kept(&self, operands: &[Value], live: &[bool]) -> Vec<Value> {
+        let live = operands.iter().zip(live).filter(|(_, live)| **live);
+        live.map(|(operand, _)| self.values[operand.0 as usize]).collect()
+    }
+
+    /// An operation over new values, without what is dead.
+    fn adapted(&self, function: &Function, operation: &Operation) -> Operation {
         match operation {
             Operation::Call(callee, arguments) => {
-                for (i, argument) in arguments.iter().enumerate() {
-                    live[argument.0 as usize] |= reads(*callee, i);
-                }
+                let live = &self.live.inputs[callee.0 as usize];
+                Operation::Call(self.id(*callee), self.kept(arguments, live))
             }
-            _ => operation.for_operands(|v| live[v.0 as usize] = true),
-        }
-    }
-    live
-}
-
-fn rebuilt(
-    function: &Function,
-    live: &[bool],
-    inputs: &[bool],
-    wanted: &[bool],
-    kept: &[Option<Kept>],
-) -> Function {
-    let mut builder = Builder::new(function.name.clone());
-    let mut input_values = Vec::new();
-    for (slot, keep) in function.inputs.iter().zip(inputs) {
-        input_values.push(if *keep { Some(builder.input(slot.name.clone(), slot.ty)) } else { None });
-    }
-    let mut values: Vec<Value> = Vec::with_capacity(function.values.len());
-    for (old, operation) in function.iter() {
-        let value = match operation {
-            _ if !live[old.0 as usize] => Value(0),
-            Operation::Input(i) => input_values[*i as usize].unwrap_or(Value(0)),
-            _ => {
-                builder.set_place(function.places[old.0 as usize]);
-                let copy = adapted(function, operation, &values, kept);
-                let value = builder.push(copy, function.ty(old));
-                if let Some(name) = function.names.get(&old) {
-                    builder.name(value, name);
-                }
-                value
+            Operation::Fold(fold) => {
+                let live = &self.live.inputs[fold.body.0 as usize];
+                Operation::Fold(Box::new(Fold {
+                    body: self.id(fold.body),
+                    condition: fold.condition.map(|condition| self.id(condition)),
+                    starts: self.kept(&fold.starts, live),
+                    steps: self.values[fold.steps.0 as usize],
+                    most: fold.most,
+                    captures: self.kept(&fold.captures, live.get(fold.starts.len() + 1..).unwrap_or(&[])),
+                }))
             }
-        };
-        values.push(value);
-    }
-    for ((slot, value), wanted) in function.outputs.iter().zip(wanted) {
-        if *wanted {
-            builder.output(slot.name.clone(), values[value.0 as usize]);
-        }
-    }
-    builder.finish()
-}
-
-/// An operation over new values, calls without the arguments and outputs that were dropped.
-fn adapted(function: &Function, operation: &Operation, values: &[Value], kept: &[Option<Kept>]) -> Operation {
-    let copy = operation.map_operands(|v| values[v.0 as usize]);
-    match (copy, operation) {
-        (Operation::Call(callee, arguments), _) => match &kept[callee.0 as usize] {
-            Some(kept) => {
-                let read = arguments.into_iter().zip(&kept.inputs).filter(|(_, keep)| **keep);
-                Operation::Call(kept.id, read.map(|(v, _)| v).collect())
+            Operation::Output(of, i) => {
+                let inner = match function.operation(*of) {
+                    Operation::Call(callee, _) => *callee,
+                    Operation::Fold(fold) => fold.body,
+                    _ => return operation.clone(),
+                };
+                let place = self.places[inner.0 as usize].get(*i as usize).copied().unwrap_or(0);
+                Operation::Output(self.values[of.0 as usize], place)
             }
-            None => Operation::Call(callee, arguments),
-        },
-        (Operation::Output(call, i), Operation::Output(old_call, _)) => {
-            let dropped = match function.operation(*old_call) {
-                Operation::Call(callee, _) => kept[callee.0 as usize].as_ref().map_or(0, |kept| {
-                    kept.outputs[..i as usize].iter().filter(|keep| !**keep).count() as u32
-                }),
-                _ => 0,
-            };
-            Operation::Output(call, i - dropped)
+            _ => operation.map_operands(|v| self.values[v.0 as usize]),
         }
-        (copy, _) => copy,
     }
 }

@@ -1,0 +1,164 @@
+//! Forward, callees first: what every value changes with.
+
+use super::{BITS, Inputs, Layout};
+use crate::graph::{Fold, Graph, Level, Operation, Value};
+use crate::intrinsic::Derivative;
+use rustc_hash::FxHashMap;
+
+/// What is known of a function.
+pub struct Known {
+    /// For each value the inputs that it changes with.
+    pub depends: Vec<Inputs>,
+    /// For each call and fold what its outputs change with.
+    pub results: FxHashMap<Value, Vec<Inputs>>,
+    /// For each output the inputs that it changes with.
+    pub outputs: Vec<Inputs>,
+    /// The inputs whose change is needed inside.
+    pub needed: Inputs,
+}
+
+/// For each position in a set what stands behind it changes with.
+struct Sources([Inputs; BITS]);
+
+impl Sources {
+    fn of(layout: Layout, operands: impl Iterator<Item = (usize, Inputs)>) -> Sources {
+        let mut sources = Sources([0; BITS]);
+        operands.for_each(|(input, depends)| sources.add(layout, input, depends));
+        sources
+    }
+
+    fn add(&mut self, layout: Layout, input: usize, depends: Inputs) {
+        self.0[layout.position(input)] |= depends;
+    }
+
+    /// What a set of inputs changes with.
+    fn through(&self, mut set: Inputs) -> Inputs {
+        let mut all = 0;
+        while set != 0 {
+            all |= self.0[set.trailing_zeros() as usize];
+            set &= set - 1;
+        }
+        all
+    }
+}
+
+/// Looks at every function once.
+pub fn analyse(graph: &Graph, layouts: &[Layout]) -> Vec<Known> {
+    let mut known: Vec<Known> = Vec::with_capacity(graph.functions.len());
+    for (function, layout) in graph.functions.iter().zip(layouts) {
+        let mut analysis = Depending {
+            layout: *layout,
+            layouts,
+            known: &known,
+            depends: Vec::with_capacity(function.values.len()),
+            results: FxHashMap::default(),
+            needed: 0,
+        };
+        for (value, operation) in function.iter() {
+            let depends = analysis.value(value, operation);
+            analysis.depends.push(if function.ty(value).is_float() { depends } else { 0 });
+        }
+        let Depending { depends, results, needed, .. } = analysis;
+        let outputs = function.outputs.iter().map(|(_, value)| depends[value.0 as usize]).collect();
+        known.push(Known { depends, results, outputs, needed });
+    }
+    known
+}
+
+/// A function being looked at.
+struct Depending<'a> {
+    layout: Layout,
+    layouts: &'a [Layout],
+    known: &'a [Known],
+    depends: Vec<Inputs>,
+    results: FxHashMap<Value, Vec<Inputs>>,
+    needed: Inputs,
+}
+
+impl Depending<'_> {
+    fn of(&self, value: Value) -> Inputs {
+        self.depends[value.0 as usize]
+    }
+
+    fn any(&self, values: &[Value]) -> Inputs {
+        values.iter().fold(0, |all, value| all | self.of(*value))
+    }
+
+    fn value(&mut self, value: Value, operation: &Operation) -> Inputs {
+        match operation {
+            Operation::Input(i) => self.layout.bit(*i as usize),
+            Operation::Builtin(intrinsic, arguments) => match intrinsic.row().derivative {
+                Derivative::Zero => 0,
+                Derivative::Rule(_) => self.any(arguments),
+            },
+            Operation::Compose(parts) => self.any(parts),
+            Operation::Extract(v, _) => self.of(*v),
+            Operation::Select(_, yes, no) => self.of(*yes) | self.of(*no),
+            Operation::Output(of, i) => {
+                let results = self.results.get(of);
+                results.and_then(|results| results.get(*i as usize)).copied().unwrap_or(0)
+            }
+            Operation::Sample { coordinate, level: Level::Auto, .. } => {
+                self.needed |= self.of(*coordinate);
+                0
+            }
+            Operation::Derivative(v, _) => {
+                self.needed |= self.of(*v);
+                0
+            }
+            Operation::Call(callee, arguments) => {
+                let callee = &self.known[callee.0 as usize];
+                let arguments = arguments.iter().map(|v| self.of(*v)).enumerate();
+                let sources = Sources::of(Layout::CALLED, arguments);
+                self.needed |= sources.through(callee.needed);
+                let results = callee.outputs.iter().map(|output| sources.through(*output)).collect();
+                self.results.insert(value, results);
+                0
+            }
+            Operation::Fold(fold) => {
+                let results = self.fold(fold);
+                self.results.insert(value, results);
+                0
+            }
+            _ => 0,
+        }
+    }
+
+    /// What the accumulators of a fold change with, after any number of steps.
+    fn fold(&mut self, fold: &Fold) -> Vec<Inputs> {
+        let (body, layout) = (&self.known[fold.body.0 as usize], self.layouts[fold.body.0 as usize]);
+        let captures = fold.captures.iter().map(|v| self.of(*v)).enumerate();
+        let first = fold.starts.len() + 1;
+        let mut sources = Sources::of(layout, captures.map(|(i, depends)| (first + i, depends)));
+        let mut accumulators: Vec<Inputs> = fold.starts.iter().map(|v| self.of(*v)).collect();
+        // Sets only grow, and inputs beyond the last bit count as one: a few rounds.
+        loop {
+            let mut changed = false;
+            accumulators.iter().enumerate().for_each(|(j, depends)| sources.add(layout, j, *depends));
+            for (depends, output) in accumulators.iter_mut().zip(&body.outputs) {
+                let more = *depends | sources.through(*output);
+                changed |= more != *depends;
+                *depends = more;
+            }
+            if !changed {
+                break;
+            }
+        }
+        let condition = fold.condition.map_or(0, |condition| self.known[condition.0 as usize].needed);
+        let needed = through_steps(layout, &body.outputs, body.needed | condition);
+        self.needed |= sources.through(needed);
+        accumulators
+    }
+}
+
+/// The inputs of a body that a set of them comes from, any number of steps before.
+pub fn through_steps(layout: Layout, outputs: &[Inputs], mut set: Inputs) -> Inputs {
+    loop {
+        let reached = outputs.iter().enumerate().filter(|(j, _)| set & layout.bit(*j) != 0);
+        let more = reached.fold(set, |all, (_, inputs)| all | inputs);
+        if more == set {
+            return set;
+        }
+        set = more;
+    }
+}

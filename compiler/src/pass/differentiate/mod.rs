@@ -1,0 +1,138 @@
+//! Screen-space derivatives by forward differentiation of the graph, on demand.
+//!
+//! A sample needs the gradient of its coordinate; a function is made anew for every combination of
+//! inputs that change across the screen and outputs whose change is wanted (a `Variant`). Only
+//! values that reach a sample or a `dx`/`dy` get a tangent. The rules are in the intrinsic table;
+//! what comes out of a sample or a fetch, and every integer, counts as constant.
+//!
+//! A fold carries the tangents of the accumulators that need one as further accumulators, and takes
+//! those of its captures as further captures. Which accumulators need one may depend on how many
+//! steps back one looks, so it is a fixpoint over the body. The condition has no derivative, but
+//! takes what its fold carries.
+//!
+//! Analyses first, along arena order, so nothing recurses: `depend` finds what each value changes
+//! with, callees first, and `demand` which values need a tangent and so which variants are
+//! requested, callers first. Then `make` makes them, callees first.
+
+mod demand;
+mod depend;
+mod make;
+
+use crate::graph::{FunctionId, Graph, Operation, Type, Value};
+use demand::Requests;
+use depend::Known;
+use make::{Made, Making};
+
+/// A set of inputs of a function. Those from bit 127 on share it: they may count as dependent when
+/// they are not.
+type Inputs = u128;
+
+const BITS: usize = Inputs::BITS as usize;
+
+/// How the inputs of a function are numbered in sets, and where their tangents go.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Layout {
+    /// The tangents of the inputs before this one stand right before it, those of the others at
+    /// the end.
+    split: usize,
+    /// A condition is not told the number of the step; in sets it is counted as if it were, so that
+    /// one set is right for the body and for the condition of a fold.
+    skips: bool,
+}
+
+impl Layout {
+    const CALLED: Layout = Layout { split: usize::MAX, skips: false };
+
+    fn body(accumulators: usize) -> Layout {
+        Layout { split: accumulators, skips: false }
+    }
+
+    fn condition(accumulators: usize) -> Layout {
+        Layout { split: accumulators, skips: true }
+    }
+
+    /// Of every function of a graph.
+    fn all(graph: &Graph) -> Vec<Layout> {
+        let mut layouts = vec![Layout::CALLED; graph.functions.len()];
+        for operation in graph.functions.iter().flat_map(|function| &function.values) {
+            if let Operation::Fold(fold) = operation {
+                layouts[fold.body.0 as usize] = Layout::body(fold.starts.len());
+                if let Some(condition) = fold.condition {
+                    layouts[condition.0 as usize] = Layout::condition(fold.starts.len());
+                }
+            }
+        }
+        layouts
+    }
+
+    fn position(self, input: usize) -> usize {
+        (input + usize::from(self.skips && input >= self.split)).min(BITS - 1)
+    }
+
+    fn bit(self, input: usize) -> Inputs {
+        1 << self.position(input)
+    }
+}
+
+/// A function with tangents: inputs that change, and outputs whose change is wanted.
+#[derive(Clone, PartialEq, Eq)]
+struct Variant {
+    changing: Inputs,
+    wanted: Vec<bool>,
+}
+
+impl Variant {
+    /// Whether it takes the tangents of an input.
+    fn takes(&self, layout: Layout, input: usize, ty: Type) -> bool {
+        ty.is_float() && self.changing & layout.bit(input) != 0
+    }
+
+    /// Does all that the other does, too.
+    fn join(&mut self, other: &Variant) {
+        self.changing |= other.changing;
+        self.wanted.iter_mut().zip(&other.wanted).for_each(|(wanted, other)| *wanted |= other);
+    }
+}
+
+/// What is known of a graph before variants are made.
+struct Analysis<'a> {
+    graph: &'a Graph,
+    layouts: Vec<Layout>,
+    known: Vec<Known>,
+}
+
+impl Analysis<'_> {
+    fn of(&self, id: FunctionId) -> &Known {
+        &self.known[id.0 as usize]
+    }
+
+    fn layout(&self, id: FunctionId) -> Layout {
+        self.layouts[id.0 as usize]
+    }
+}
+
+/// Replaces every `Level::Auto` by gradients and every inner derivative by its value.
+pub fn run(graph: Graph) -> Graph {
+    let layouts = Layout::all(&graph);
+    let known = depend::analyse(&graph, &layouts);
+    let analysis = Analysis { graph: &graph, layouts, known };
+    let requests = Requests::of(&analysis);
+    let mut functions = Vec::new();
+    let mut made: Vec<Vec<Made>> = Vec::with_capacity(graph.functions.len());
+    for i in 0..graph.functions.len() {
+        let variants = requests.of_function(i).map(|(variant, demand)| {
+            let making = Making::new(&analysis, i, variant, demand, &requests, &made);
+            let (function, tangents) = making.run();
+            functions.push(function);
+            Made { id: FunctionId(functions.len() as u32 - 1), tangents }
+        });
+        let variants = variants.collect();
+        made.push(variants);
+    }
+    Graph { functions, ..graph }
+}
+
+/// Whether a set of flags holds a value.
+fn marked(flags: &[bool], value: Value) -> bool {
+    flags.get(value.0 as usize).copied().unwrap_or(false)
+}
