@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::folds::{collatz, counted, gathered, nested};
 use common::programs::{arithmetic, fetched, sampled, tiled};
 use common::{folder, project, write_deep, write_picture};
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -29,6 +30,7 @@ const TESTS: &[(&str, Test)] = &[
     ("patterns_agree", patterns_agree),
     ("integers_are_equal", integers_are_equal),
     ("inputs_calls_and_outputs_agree", inputs_calls_and_outputs_agree),
+    ("folds_agree", folds_agree),
     ("a_compiled_program_agrees", a_compiled_program_agrees),
     ("tiles_have_no_seams", tiles_have_no_seams),
     ("a_broken_shader_is_an_error", a_broken_shader_is_an_error),
@@ -151,6 +153,23 @@ fn inputs_calls_and_outputs_agree(gpu: &Gpu) -> Result<(), Failed> {
         request.time = 2.5;
         request.output = output;
         compare(gpu, &program, &Tables::default(), &request, 1e-4)?;
+    }
+    Ok(())
+}
+
+fn folds_agree(gpu: &Gpu) -> Result<(), Failed> {
+    for program in [collatz(), nested()] {
+        let request = scaled(&program, [48, 48], [0.5, 0.0]);
+        let request = Request { region: [0.0, 0.0, 3.0, 3.0], ..request };
+        compare(gpu, &program, &Tables::default(), &request, 0.0)?;
+    }
+    let request = Request { region: [-0.25, 0.0, 0.75, 1.0], ..Request::new([64, 3]) };
+    compare(gpu, &counted(), &Tables::default(), &request, 1e-5)?;
+    let folder = folder();
+    write_picture(&folder.path().join("a.png"), [32, 32], &noise(32 * 32 * 4));
+    let (program, tables) = gathered(folder.path(), "a.png");
+    for size in [256, 64, 16] {
+        compare(gpu, &program, &tables, &Request::new([size, size]), FILTERED)?;
     }
     Ok(())
 }
