@@ -63,7 +63,7 @@ fn compare(
     tolerance: f32,
 ) -> Result<(), Failed> {
     let ours = cpu::render(program, tables, request, &|_| {}).map_err(|error| error.to_string())?;
-    let scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
+    let mut scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
     let theirs = scene.render(request, &|_| {}).map_err(|error| error.to_string())?;
     if ours.pixels.iter().all(|pixel| *pixel == ours.pixels[0]) {
         return Err("the picture has one colour: it proves nothing".into());
@@ -214,7 +214,7 @@ fn a_compiled_program_agrees(gpu: &Gpu) -> Result<(), Failed> {
 
 fn tiles_have_no_seams(gpu: &Gpu) -> Result<(), Failed> {
     let program = arithmetic();
-    let scene = gpu.prepare(&program, &Tables::default(), 1).map_err(|error| error.to_string())?;
+    let mut scene = gpu.prepare(&program, &Tables::default(), 1).map_err(|error| error.to_string())?;
     for size in [[2100, 3], [5, 1025]] {
         let request = Request { output: 1, ..Request::new(size) };
         let heard = Mutex::new(Vec::new());
@@ -270,7 +270,7 @@ fn impossible_requests_are_errors(gpu: &Gpu) -> Result<(), Failed> {
     if !matches!(gpu.prepare(&program, &Tables::default(), 2), Err(RenderError::NoOutput { .. })) {
         return Err("an output that is not there was accepted".into());
     }
-    let scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
+    let mut scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
     let size = scene.render(&Request::new([0, 1]), &|_| {});
     let region = scene.render(&Request { region: [f64::NAN; 4], ..Request::new([1, 1]) }, &|_| {});
     if !matches!(size, Err(RenderError::Size { .. })) || region != Err(RenderError::NotFinite) {

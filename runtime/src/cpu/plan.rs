@@ -13,8 +13,8 @@ use super::demand::demand;
 use super::machine::{Machine, evaluate, fold_steps};
 use super::texture::Texture;
 use crate::flat::Slope;
+use crate::pass::Pass;
 use crate::render::{RenderError, Request};
-use texgraph_compiler::Program;
 use texgraph_compiler::graph::{Axis, Constant, Function, FunctionId, Operation, Value};
 use texgraph_compiler::manifest;
 
@@ -74,13 +74,13 @@ impl Plan {
     ///
     /// # Errors
     /// A pixel takes more than [`MAX_OPERATIONS`].
-    pub fn new(program: &Program, request: &Request, textures: &[Texture]) -> Result<Plan, RenderError> {
-        let graph = &program.texture().graph;
+    pub fn new(pass: &Pass<'_>, request: &Request, textures: &[Texture]) -> Result<Plan, RenderError> {
+        let graph = &pass.code.graph;
         let live = demand(graph, request.output);
         let entry = graph.functions.len().saturating_sub(1);
         let mut plan = Plan { functions: Vec::new(), entry, output: request.output, inputs: Vec::new() };
         for (id, function) in graph.functions.iter().enumerate() {
-            let mut planner = Planner::new(program, request, function, &live[id]);
+            let mut planner = Planner::new(pass, request, function, &live[id]);
             if id == entry {
                 planner.take_entry_inputs();
             } else {
@@ -120,7 +120,7 @@ enum State {
 }
 
 struct Planner<'a> {
-    program: &'a Program,
+    pass: &'a Pass<'a>,
     request: &'a Request,
     function: &'a Function,
     live: &'a [bool],
@@ -131,13 +131,13 @@ struct Planner<'a> {
 
 impl<'a> Planner<'a> {
     fn new(
-        program: &'a Program,
+        pass: &'a Pass<'a>,
         request: &'a Request,
         function: &'a Function,
         live: &'a [bool],
     ) -> Planner<'a> {
         let states = vec![State::Unknown; function.values.len()];
-        Planner { program, request, function, live, states, inputs: Vec::new(), planned: Planned::default() }
+        Planner { pass, request, function, live, states, inputs: Vec::new(), planned: Planned::default() }
     }
 
     /// Live values with their operations, operands first.
@@ -183,7 +183,7 @@ impl<'a> Planner<'a> {
 
     fn entry_input(&mut self, n: u32, source: fn(Slope) -> Source) -> State {
         let Some(slot) = self.function.inputs.get(n as usize) else { return State::Unknown };
-        let input = self.program.manifest.inputs.iter().find(|input| input.name == slot.name);
+        let input = self.pass.inputs.iter().find(|input| input.name == slot.name);
         let draw = input.and_then(|input| self.request.draw().value(&input.name, input.ty));
         let slope = Slope::of(&slot.name, self.request);
         match (draw, source(slope)) {
@@ -230,8 +230,8 @@ impl<'a> Planner<'a> {
         };
         match operation {
             Operation::Param(id) => {
-                let name = &self.program.texture().graph.params.get(id.0 as usize)?.name;
-                let param = self.program.manifest.params.iter().find(|param| param.name == *name)?;
+                let name = &self.pass.code.graph.params.get(id.0 as usize)?.name;
+                let param = self.pass.manifest.params.iter().find(|param| param.name == *name)?;
                 Some(State::Known(constant(&self.request.settings.value(param))))
             }
             Operation::Output(call, n) => {
