@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::folds::{collatz, counted, floats, gathered, int, ints, nested, number};
+use common::folds::{collatz, counted, endless, floats, gathered, int, ints, nested, number};
 use common::programs::{VEC2, float, output, program};
 use common::{folder, write_picture};
 use texgraph_compiler::Program;
@@ -118,27 +118,6 @@ fn of(functions: Vec<Function>) -> Program {
         .map(|n| manifest::Output { ty: float(1), ..output(&format!("value{n}"), 1, n) })
         .collect();
     program
-}
-
-/// `x + 1`, so often that no one can wait for it: each function calls the one before twice.
-fn endless() -> Vec<Function> {
-    let mut functions: Vec<Function> = Vec::new();
-    for id in 0..40 {
-        let mut b = Builder::new("f");
-        let mut x = b.input("x", Type::FLOAT);
-        for _ in 0..2 {
-            x = match functions.last() {
-                Some(last) => b.call(FunctionId(id - 1), last, vec![x])[0],
-                None => {
-                    let one = number(&mut b, 1.0);
-                    floats(&mut b, "+", x, one)
-                }
-            };
-        }
-        b.output("y", x);
-        functions.push(b.finish());
-    }
-    functions
 }
 
 /// A fold of the accumulators (a, b, c, d): a' = a + u, b' = b + c, c' = c + 1, d' = endless(d).

@@ -1,7 +1,11 @@
 //! The GPU renderer against the CPU renderer, on programs that are written twice: as WGSL and as a
 //! graph. Without an adapter the tests are shown as ignored, unless `TEXGRAPH_GPU=required`.
 
+#[path = "gpu/bakes.rs"]
+mod bakes;
 mod common;
+#[path = "gpu/threads.rs"]
+mod threads;
 
 use common::folds::{collatz, counted, gathered, nested};
 use common::programs::{arithmetic, fetched, sampled, tiled};
@@ -31,6 +35,13 @@ const TESTS: &[(&str, Test)] = &[
     ("integers_are_equal", integers_are_equal),
     ("inputs_calls_and_outputs_agree", inputs_calls_and_outputs_agree),
     ("folds_agree", folds_agree),
+    ("bakes_agree", bakes::bakes_agree),
+    ("large_bakes_agree", bakes::large_bakes_agree),
+    ("bakes_of_bakes_agree", bakes::bakes_of_bakes_agree),
+    ("bakes_are_drawn_again_only_for_their_params", bakes::bakes_are_drawn_again_only_for_their_params),
+    ("values_out_of_range_are_stored_alike", bakes::values_out_of_range_are_stored_alike),
+    ("a_broken_bake_is_an_error_with_its_name", bakes::a_broken_bake_is_an_error_with_its_name),
+    ("pictures_are_read_back_from_many_threads", threads::pictures_are_read_back_from_many_threads),
     ("a_compiled_program_agrees", a_compiled_program_agrees),
     ("tiles_have_no_seams", tiles_have_no_seams),
     ("a_broken_shader_is_an_error", a_broken_shader_is_an_error),

@@ -315,3 +315,24 @@ pub fn gathered(folder: &Path, picture: &str) -> (Program, Tables) {
     let tables = load(&mut program, &project(folder)).expect("the resources load");
     (program, tables)
 }
+
+/// `x + 1`, so often that no one can wait for it: each function calls the one before twice.
+pub fn endless() -> Vec<Function> {
+    let mut functions: Vec<Function> = Vec::new();
+    for id in 0..40 {
+        let mut b = Builder::new("f");
+        let mut x = b.input("x", Type::FLOAT);
+        for _ in 0..2 {
+            x = match functions.last() {
+                Some(last) => b.call(FunctionId(id - 1), last, vec![x])[0],
+                None => {
+                    let one = number(&mut b, 1.0);
+                    floats(&mut b, "+", x, one)
+                }
+            };
+        }
+        b.output("y", x);
+        functions.push(b.finish());
+    }
+    functions
+}
