@@ -9,9 +9,10 @@ use crate::problem::{Problem, Report};
 use crate::program::{self, Program};
 use std::path::PathBuf;
 use std::sync::Arc;
+use texgraph_compiler::Options;
 use texgraph_compiler::diagnostic::Diagnostic;
 use texgraph_compiler::manifest::{self, Manifest};
-use texgraph_compiler::{Failure, Options};
+use texgraph_runtime::bake;
 use texgraph_runtime::resource::Tables;
 
 /// A file's name and its bytes.
@@ -30,10 +31,10 @@ pub fn run(args: &Build, report: &mut Report) -> Result<(), Problem> {
     for texture in wanted(args, &program)? {
         match make(args, &program, texture) {
             Ok(files) => made.extend(files),
-            Err(failure) => show(report, &mut shown, failure),
+            Err(problem) => show(report, &mut shown, problem),
         }
     }
-    if shown.is_empty() {
+    if report.exit_code() == 0 {
         write(args, made)?;
     }
     Ok(())
@@ -51,14 +52,16 @@ fn wanted(args: &Build, program: &Program<'_>) -> Result<Vec<Option<String>>, Pr
 }
 
 /// Shows what has not been shown for an earlier texture: two that read one picture share its errors.
-fn show(report: &mut Report, shown: &mut Vec<Diagnostic>, mut failure: Failure) {
-    failure.diagnostics.retain(|diagnostic| !shown.contains(diagnostic));
-    shown.extend(failure.diagnostics.iter().cloned());
-    report.show(&Problem::Pages(failure));
+fn show(report: &mut Report, shown: &mut Vec<Diagnostic>, mut problem: Problem) {
+    if let Problem::Pages(failure) = &mut problem {
+        failure.diagnostics.retain(|diagnostic| !shown.contains(diagnostic));
+        shown.extend(failure.diagnostics.iter().cloned());
+    }
+    report.show(&problem);
 }
 
-/// All files of one texture.
-fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<Vec<Made>, Failure> {
+/// All files of one texture. A bake that a param changes has no file: its host draws it.
+fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<Vec<Made>, Problem> {
     let options = Options {
         texture,
         outputs: None,
@@ -70,7 +73,8 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
         first_binding: args.first_binding,
     };
     let mut compiled = program.compile(&options)?;
-    let tables = program.load(&mut compiled)?;
+    let mut tables = program.load(&mut compiled)?;
+    bake::render_fixed(&compiled.program, &mut tables)?;
     let mut manifest = compiled.program.manifest;
     let mut files = name_tables(&mut manifest, &tables);
     for (pass, described) in compiled.program.passes.into_iter().zip(&manifest.passes) {

@@ -68,11 +68,16 @@ impl From<PictureError> for Problem {
 impl From<RenderError> for Problem {
     fn from(error: RenderError) -> Problem {
         let sentence = error.to_string();
-        match error {
+        let cause = if let RenderError::Bake { error, .. } = &error { error } else { &error };
+        match cause {
             RenderError::Size { .. } | RenderError::NotFinite => Problem::Usage(sentence),
-            RenderError::NoOutput { .. } | RenderError::NoTable { .. } => Problem::Input(sentence),
+            RenderError::NoOutput { .. } | RenderError::NoTable { .. } | RenderError::TextureSize { .. } => {
+                Problem::Input(sentence)
+            }
             RenderError::Memory { .. }
             | RenderError::TooMuchWork { .. }
+            | RenderError::NoPass
+            | RenderError::Bake { .. }
             | RenderError::NoAdapter { .. }
             | RenderError::Gpu(_) => Problem::Machine(sentence),
         }

@@ -90,7 +90,7 @@ fn cpu_and_gpu_agree(gpu: &Gpu, file: &Path) -> Result<(), Failed> {
     for output in 0..program.manifest.outputs.len() {
         for region in ZOOMS {
             let request = Request { region, time: 1.25, output, ..Request::new([SIDE, SIDE]) };
-            let prepared = gpu.prepare(&program, &tables, output).map_err(|error| error.to_string())?;
+            let mut prepared = gpu.prepare(&program, &tables, output).map_err(|error| error.to_string())?;
             let theirs = prepared.render(&request, &|_| {}).map_err(|error| error.to_string())?;
             let ours = on_cpu(&program, &tables, &request)?;
             let within = agreement(&ours, &theirs)?;

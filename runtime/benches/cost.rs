@@ -29,7 +29,7 @@ fn main() {
     });
     match Gpu::new(Preference::Hardware) {
         Ok(gpu) => {
-            let scene = gpu.prepare(&program, &tables, 0).expect("the program is prepared");
+            let mut scene = gpu.prepare(&program, &tables, 0).expect("the program is prepared");
             compare(&gpu.name(), |i| {
                 scene.render(&requests[i], &|_| {}).expect("the GPU renders");
             });
@@ -62,7 +62,7 @@ fn timed(mut f: impl FnMut()) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-fn compare(name: &str, draw: impl Fn(usize)) {
+fn compare(name: &str, mut draw: impl FnMut(usize)) {
     draw(0);
     draw(1);
     let mut between = Vec::new();

@@ -6,9 +6,11 @@
 //! ```
 //!
 //! [`project::Project`] says which files a program may read, [`resource::load`] makes the bytes of
-//! its textures, [`render::render`] makes a [`picture::Picture`] of one of its outputs. The GPU is
-//! the feature `gpu`; without it everything else stays.
+//! its textures, [`render::render`] makes a [`picture::Picture`] of one of its outputs, and
+//! [`render::Scene`] many of them. What a program [`bake`]s is drawn on the way. The GPU is the
+//! feature `gpu`; without it everything else stays.
 
+pub mod bake;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
@@ -21,3 +23,5 @@ pub mod uniform;
 
 mod flat;
 mod nearest;
+mod pass;
+mod progress;

@@ -2,15 +2,26 @@
 //!
 //! The picture is the flat view of the texture: a rectangle of `uv` fills it, the first row is at
 //! the top, `v` grows downward, and each pixel is computed at its centre.
+//!
+//! ```text
+//! Renderer::new ─▶ renderer.scene(program, tables, output) ─▶ scene.render(request), again and again
+//! ```
+//!
+//! A [`Renderer`] is a device, a [`Scene`] a program on it. A scene keeps its textures and its
+//! pipelines, and the bakes that no changed param touches: an animation makes one scene and renders
+//! each frame with it. [`Renderer::render`] and [`render`] are for single pictures.
+
+mod error;
+
+pub use error::RenderError;
 
 use crate::cpu;
 #[cfg(feature = "gpu")]
-use crate::gpu::{Gpu, Preference};
+use crate::gpu::{self, Gpu, Preference};
 use crate::picture::{Content, Picture};
 use crate::resource::Tables;
 use crate::settings::Settings;
 use crate::uniform::Draw;
-use std::fmt;
 use texgraph_compiler::Program;
 
 /// The longest side of a picture, in pixels.
@@ -42,31 +53,39 @@ impl Request {
         Draw { time: self.time, ..Draw::default() }
     }
 
-    /// An empty picture for a program's output.
+    /// A blank picture for a program's output.
     ///
     /// # Errors
     /// The request asks for what can't be, or for more than there is memory for.
     pub(crate) fn picture(&self, program: &Program) -> Result<Picture, RenderError> {
+        let outputs = &program.manifest.outputs;
+        let output = outputs
+            .get(self.output)
+            .ok_or(RenderError::NoOutput { output: self.output, outputs: outputs.len() })?;
+        let content = match output.name.as_str() {
+            _ if output.is_color => Content::Color,
+            "normal" => Content::Normal,
+            _ => Content::Data,
+        };
+        Ok(Picture { content, ..self.blank()? })
+    }
+
+    /// A blank picture of data.
+    ///
+    /// # Errors
+    /// As for [`Request::picture`].
+    pub(crate) fn blank(&self) -> Result<Picture, RenderError> {
         if self.size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
             return Err(RenderError::Size { size: self.size });
         }
         if !self.region.iter().all(|bound| bound.is_finite()) || !self.time.is_finite() {
             return Err(RenderError::NotFinite);
         }
-        let outputs = &program.manifest.outputs;
-        let output = outputs
-            .get(self.output)
-            .ok_or(RenderError::NoOutput { output: self.output, outputs: outputs.len() })?;
         let count = self.size[0] as usize * self.size[1] as usize;
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| RenderError::Memory { size: self.size })?;
         pixels.resize(count, [0.0; 4]);
-        let content = match output.name.as_str() {
-            _ if output.is_color => Content::Color,
-            "normal" => Content::Normal,
-            _ => Content::Data,
-        };
-        Ok(Picture { size: self.size, pixels, content })
+        Ok(Picture { size: self.size, pixels, content: Content::Data })
     }
 }
 
@@ -126,10 +145,27 @@ impl Renderer {
         "CPU renderer".to_string()
     }
 
-    /// Renders. `progress` hears shares from 0 to 1, from any thread.
+    /// Makes a program's output ready to be rendered any number of times.
     ///
     /// # Errors
-    /// The request can't be met, a table is missing, or the GPU fails.
+    /// There is no such output, a table is missing, or the GPU refuses the shader.
+    pub fn scene<'a>(
+        &'a self,
+        program: &'a Program,
+        tables: &Tables,
+        output: usize,
+    ) -> Result<Scene<'a>, RenderError> {
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = &self.gpu {
+            return Ok(Scene::Gpu(Box::new(gpu.prepare(program, tables, output)?)));
+        }
+        Ok(Scene::Cpu(Box::new(cpu::Scene::new(program, tables, output)?)))
+    }
+
+    /// Renders one picture: [`Renderer::scene`], then [`Scene::render`].
+    ///
+    /// # Errors
+    /// As these two.
     pub fn render(
         &self,
         program: &Program,
@@ -137,11 +173,46 @@ impl Renderer {
         request: &Request,
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<Picture, RenderError> {
-        #[cfg(feature = "gpu")]
-        if let Some(gpu) = &self.gpu {
-            return gpu.prepare(program, tables, request.output)?.render(request, progress);
+        self.scene(program, tables, request.output)?.render(request, progress)
+    }
+}
+
+/// A program's output on a renderer, with its textures and bakes.
+pub enum Scene<'a> {
+    /// On a GPU.
+    #[cfg(feature = "gpu")]
+    Gpu(Box<gpu::Scene<'a>>),
+    /// On the CPU.
+    Cpu(Box<cpu::Scene<'a>>),
+}
+
+impl Scene<'_> {
+    /// Renders a picture of the output that the scene was made for; the request's own is not looked
+    /// at. Bakes that depend on a param with a new value are drawn first, at the first picture all
+    /// of them. `progress` hears shares from 0 to 1, from any thread.
+    ///
+    /// # Errors
+    /// The request can't be met, a pixel takes too much work for the CPU, or the GPU fails. Other
+    /// requests may be met after that.
+    pub fn render(
+        &mut self,
+        request: &Request,
+        progress: &(dyn Fn(f32) + Sync),
+    ) -> Result<Picture, RenderError> {
+        match self {
+            #[cfg(feature = "gpu")]
+            Scene::Gpu(scene) => scene.render(request, progress),
+            Scene::Cpu(scene) => scene.render(request, progress),
         }
-        cpu::render(program, tables, request, progress)
+    }
+
+    /// How many bakes have been drawn for all pictures so far.
+    pub fn bakes_drawn(&self) -> u64 {
+        match self {
+            #[cfg(feature = "gpu")]
+            Scene::Gpu(scene) => scene.bakes_drawn(),
+            Scene::Cpu(scene) => scene.bakes_drawn(),
+        }
     }
 }
 
@@ -158,79 +229,3 @@ pub fn render(
 ) -> Result<Picture, RenderError> {
     Renderer::new(backend)?.render(program, tables, request, progress)
 }
-
-/// Why there is no picture.
-#[derive(Clone, Debug, PartialEq)]
-pub enum RenderError {
-    /// A side is 0 or more than [`MAX_SIDE`].
-    Size {
-        /// The size asked for.
-        size: [u32; 2],
-    },
-    /// There is not enough memory.
-    Memory {
-        /// The size asked for.
-        size: [u32; 2],
-    },
-    /// The region or the time is no finite number.
-    NotFinite,
-    /// The program has no such output.
-    NoOutput {
-        /// The output asked for.
-        output: usize,
-        /// How many there are.
-        outputs: usize,
-    },
-    /// The bytes of a texture were not loaded, or are not as its table says.
-    NoTable {
-        /// The resource.
-        resource: String,
-        /// Its field.
-        field: String,
-    },
-    /// A pixel takes more operations than the CPU renderer does.
-    TooMuchWork {
-        /// Operations a pixel.
-        operations: u64,
-        /// The most that it does.
-        limit: u64,
-    },
-    /// No GPU can be used.
-    NoAdapter {
-        /// What was found, and why it does not do.
-        reason: String,
-    },
-    /// The GPU or its driver failed.
-    Gpu(String),
-}
-
-impl fmt::Display for RenderError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            RenderError::Size { size: [width, height] } => {
-                write!(f, "a picture has 1 to {MAX_SIDE} pixels along a side, not {width}×{height}")
-            }
-            RenderError::Memory { size: [width, height] } => {
-                let gibibytes = f64::from(*width) * f64::from(*height) * 16.0 / f64::from(1 << 30);
-                write!(
-                    f,
-                    "there is no memory for {width}×{height} pixels ({gibibytes:.1} GiB); render parts of it"
-                )
-            }
-            RenderError::NotFinite => write!(f, "the region and the time must be finite numbers"),
-            RenderError::NoOutput { output, outputs } => {
-                write!(f, "there is no output number {output}; the texture has {outputs}")
-            }
-            RenderError::NoTable { resource, field } => {
-                write!(f, "the texels of `{resource}.{field}` are missing or not as its table says")
-            }
-            RenderError::TooMuchWork { operations, limit } => {
-                write!(f, "a pixel takes {operations} operations; the CPU renderer does at most {limit}")
-            }
-            RenderError::NoAdapter { reason } => write!(f, "there is no GPU to render on: {reason}"),
-            RenderError::Gpu(text) => write!(f, "the GPU failed: {text}"),
-        }
-    }
-}
-
-impl std::error::Error for RenderError {}

@@ -1,8 +1,13 @@
 //! The GPU renderer against the CPU renderer, on programs that are written twice: as WGSL and as a
 //! graph. Without an adapter the tests are shown as ignored, unless `TEXGRAPH_GPU=required`.
 
+#[path = "gpu/bakes.rs"]
+mod bakes;
 mod common;
+#[path = "gpu/threads.rs"]
+mod threads;
 
+use common::folds::{collatz, counted, gathered, nested};
 use common::programs::{arithmetic, fetched, sampled, tiled};
 use common::{folder, project, write_deep, write_picture};
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -29,6 +34,14 @@ const TESTS: &[(&str, Test)] = &[
     ("patterns_agree", patterns_agree),
     ("integers_are_equal", integers_are_equal),
     ("inputs_calls_and_outputs_agree", inputs_calls_and_outputs_agree),
+    ("folds_agree", folds_agree),
+    ("bakes_agree", bakes::bakes_agree),
+    ("large_bakes_agree", bakes::large_bakes_agree),
+    ("bakes_of_bakes_agree", bakes::bakes_of_bakes_agree),
+    ("bakes_are_drawn_again_only_for_their_params", bakes::bakes_are_drawn_again_only_for_their_params),
+    ("values_out_of_range_are_stored_alike", bakes::values_out_of_range_are_stored_alike),
+    ("a_broken_bake_is_an_error_with_its_name", bakes::a_broken_bake_is_an_error_with_its_name),
+    ("pictures_are_read_back_from_many_threads", threads::pictures_are_read_back_from_many_threads),
     ("a_compiled_program_agrees", a_compiled_program_agrees),
     ("tiles_have_no_seams", tiles_have_no_seams),
     ("a_broken_shader_is_an_error", a_broken_shader_is_an_error),
@@ -61,7 +74,7 @@ fn compare(
     tolerance: f32,
 ) -> Result<(), Failed> {
     let ours = cpu::render(program, tables, request, &|_| {}).map_err(|error| error.to_string())?;
-    let scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
+    let mut scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
     let theirs = scene.render(request, &|_| {}).map_err(|error| error.to_string())?;
     if ours.pixels.iter().all(|pixel| *pixel == ours.pixels[0]) {
         return Err("the picture has one colour: it proves nothing".into());
@@ -155,6 +168,23 @@ fn inputs_calls_and_outputs_agree(gpu: &Gpu) -> Result<(), Failed> {
     Ok(())
 }
 
+fn folds_agree(gpu: &Gpu) -> Result<(), Failed> {
+    for program in [collatz(), nested()] {
+        let request = scaled(&program, [48, 48], [0.5, 0.0]);
+        let request = Request { region: [0.0, 0.0, 3.0, 3.0], ..request };
+        compare(gpu, &program, &Tables::default(), &request, 0.0)?;
+    }
+    let request = Request { region: [-0.25, 0.0, 0.75, 1.0], ..Request::new([64, 3]) };
+    compare(gpu, &counted(), &Tables::default(), &request, 1e-5)?;
+    let folder = folder();
+    write_picture(&folder.path().join("a.png"), [32, 32], &noise(32 * 32 * 4));
+    let (program, tables) = gathered(folder.path(), "a.png");
+    for size in [256, 64, 16] {
+        compare(gpu, &program, &tables, &Request::new([size, size]), FILTERED)?;
+    }
+    Ok(())
+}
+
 /// From a file's text to pictures: every kind of resource, read through the library.
 const SOURCE: &str = r#"
 let tiles = patterns("tiles.png", grid: ivec2(4, 2))
@@ -195,7 +225,7 @@ fn a_compiled_program_agrees(gpu: &Gpu) -> Result<(), Failed> {
 
 fn tiles_have_no_seams(gpu: &Gpu) -> Result<(), Failed> {
     let program = arithmetic();
-    let scene = gpu.prepare(&program, &Tables::default(), 1).map_err(|error| error.to_string())?;
+    let mut scene = gpu.prepare(&program, &Tables::default(), 1).map_err(|error| error.to_string())?;
     for size in [[2100, 3], [5, 1025]] {
         let request = Request { output: 1, ..Request::new(size) };
         let heard = Mutex::new(Vec::new());
@@ -251,7 +281,7 @@ fn impossible_requests_are_errors(gpu: &Gpu) -> Result<(), Failed> {
     if !matches!(gpu.prepare(&program, &Tables::default(), 2), Err(RenderError::NoOutput { .. })) {
         return Err("an output that is not there was accepted".into());
     }
-    let scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
+    let mut scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
     let size = scene.render(&Request::new([0, 1]), &|_| {});
     let region = scene.render(&Request { region: [f64::NAN; 4], ..Request::new([1, 1]) }, &|_| {});
     if !matches!(size, Err(RenderError::Size { .. })) || region != Err(RenderError::NotFinite) {

@@ -1,10 +1,14 @@
-//! Runs a plan: one operation after the other, calls on a stack of frames of its own, so that no
-//! depth of calls overflows the thread's.
+//! Runs a plan: one operation after the other, calls and folds on a stack of frames of its own, so
+//! that no depth of them overflows the thread's.
+//!
+//! A fold is one frame, its body's, whose inputs are the accumulators, the number of the step and
+//! the captures: at the end of a step the outputs take the accumulators' places, and the body runs
+//! again.
 
 use super::plan::{Planned, Step};
 use super::texture::Texture;
 use glam::{IVec2, Vec2};
-use texgraph_compiler::graph::{Constant, Level, Operation, Scalar, Type, Value};
+use texgraph_compiler::graph::{Constant, Fold, FunctionId, Level, Operation, Scalar, Type, Value};
 
 /// Runs planned functions. Made once per thread, it keeps its memory between pixels.
 pub struct Machine<'a> {
@@ -14,6 +18,7 @@ pub struct Machine<'a> {
     /// The frames' values, one frame after the other.
     values: Vec<Constant>,
     outputs: Vec<Constant>,
+    /// Memory to use again: what a function is given, or gives.
     arguments: Vec<Constant>,
 }
 
@@ -25,6 +30,27 @@ struct Frame {
     base: usize,
     /// The step to do next.
     next: usize,
+    role: Role,
+}
+
+/// What a function runs for.
+#[derive(Clone, Copy)]
+enum Role {
+    Call,
+    Condition,
+    Body(Loop),
+}
+
+/// A fold that is running.
+#[derive(Clone, Copy)]
+struct Loop {
+    condition: Option<FunctionId>,
+    accumulators: usize,
+    captures: usize,
+    /// The step that is next, or being done.
+    step: u32,
+    /// How many steps there are.
+    steps: u32,
 }
 
 impl<'a> Machine<'a> {
@@ -42,67 +68,172 @@ impl<'a> Machine<'a> {
 
     /// Runs a function; its outputs. Those that were not planned are 0.
     pub fn run(&mut self, function: usize, inputs: impl Iterator<Item = Constant>) -> &[Constant] {
-        self.outputs.clear();
         self.arguments.clear();
         self.arguments.extend(inputs);
-        self.enter(function);
-        while let Some(frame) = self.frames.last_mut() {
-            let planned = &self.functions[frame.function];
-            let Some(step) = planned.steps.get(frame.next) else {
-                self.leave(planned);
-                continue;
-            };
-            frame.next += 1;
-            let frame = *frame;
-            if let Operation::Call(callee, arguments) = &step.operation {
-                self.arguments.clear();
-                for argument in arguments {
-                    self.arguments.push(read(planned, &self.values[frame.base..], *argument));
-                }
-                self.enter(callee.0 as usize);
-            } else {
-                self.step(planned, frame.base, step);
-            }
-        }
+        self.outputs.clear();
+        self.enter(function, Role::Call);
+        self.work();
         &self.outputs
     }
 
-    /// Begins a function whose inputs are the arguments.
-    fn enter(&mut self, function: usize) {
-        let Some(planned) = self.functions.get(function) else { return };
+    /// Runs a fold whose operands `read` gives; its accumulators.
+    pub fn run_fold(&mut self, fold: &Fold, read: impl Fn(Value) -> Constant) -> &[Constant] {
+        self.outputs.clear();
+        let started = started(fold, read, &mut self.arguments);
+        self.enter_fold(fold.body, started);
+        self.work();
+        &self.outputs
+    }
+
+    /// Goes on until no function runs.
+    fn work(&mut self) {
+        while let Some(frame) = self.frames.last_mut() {
+            let planned = &self.functions[frame.function];
+            let step = planned.steps.get(frame.next);
+            frame.next += 1;
+            let frame = *frame;
+            match step {
+                Some(step) => self.step(planned, frame.base, step),
+                None => self.leave(planned, frame),
+            }
+        }
+    }
+
+    /// Does one step, or begins what it runs.
+    fn step(&mut self, planned: &'a Planned, base: usize, step: &'a Step) {
+        match &step.operation {
+            Operation::Call(callee, arguments) => {
+                self.arguments.clear();
+                let frame = &self.values[base..];
+                self.arguments.extend(arguments.iter().map(|value| read(planned, frame, *value)));
+                self.enter(callee.0 as usize, Role::Call);
+            }
+            Operation::Fold(fold) => {
+                let frame = &self.values[base..];
+                let started = started(fold, |value| read(planned, frame, value), &mut self.arguments);
+                self.enter_fold(fold.body, started);
+            }
+            operation => {
+                let frame = &self.values[base..];
+                let read = |value| read(planned, frame, value);
+                let value = evaluate(operation, read, self.textures, &mut self.arguments);
+                self.values[base + step.target.0 as usize - planned.known.len()] = value;
+            }
+        }
+    }
+    /// Begins a function whose inputs are the arguments; whether there is such a function.
+    fn enter(&mut self, function: usize, role: Role) -> bool {
+        let Some(planned) = self.functions.get(function) else { return false };
         let base = self.values.len();
         self.values.extend(self.arguments.iter().take(planned.slots));
         self.values.resize(base + planned.slots, zero());
-        self.frames.push(Frame { function, base, next: 0 });
+        self.frames.push(Frame { function, base, next: 0, role });
+        true
     }
 
-    /// Ends the innermost function: hands its outputs to its caller.
-    fn leave(&mut self, planned: &Planned) {
-        let Some(frame) = self.frames.pop() else { return };
-        let (callers, own) = self.values.split_at_mut(frame.base);
-        let output =
-            |n: usize| planned.outputs.get(n).copied().flatten().map_or(zero(), |at| read(planned, own, at));
-        match self.frames.last() {
-            None => self.outputs.extend((0..planned.outputs.len()).map(output)),
-            Some(caller) => {
-                let calling = &self.functions[caller.function];
-                for (n, target) in &calling.steps[caller.next - 1].results {
-                    callers[caller.base + target.0 as usize - calling.known.len()] = output(*n as usize);
+    /// Begins a fold whose body's inputs are the arguments.
+    fn enter_fold(&mut self, body: FunctionId, fold: Loop) {
+        if self.enter(body.0 as usize, Role::Body(fold)) {
+            self.turn();
+        }
+    }
+
+    /// Begins the next step of the innermost fold, by its condition if it has one; or ends the fold.
+    fn turn(&mut self) {
+        let Some(Frame { role: Role::Body(fold), base, next, .. }) = self.frames.last_mut() else { return };
+        if fold.step == fold.steps {
+            return self.end_fold();
+        }
+        *next = 0;
+        if let Some(condition) = fold.condition {
+            let inputs = &self.values[*base..];
+            let captures = inputs.iter().skip(fold.accumulators + 1).take(fold.captures);
+            self.arguments.clear();
+            self.arguments.extend(inputs.iter().take(fold.accumulators).chain(captures));
+            self.enter(condition.0 as usize, Role::Condition);
+        }
+    }
+
+    /// Ends the innermost function.
+    fn leave(&mut self, planned: &Planned, frame: Frame) {
+        let own = &self.values[frame.base..];
+        let output = |n: usize| planned.outputs.get(n).copied().flatten().map(|at| read(planned, own, at));
+        match frame.role {
+            Role::Call => {
+                self.arguments.clear();
+                self.arguments.extend((0..planned.outputs.len()).map(|n| output(n).unwrap_or_else(zero)));
+                self.drop_frame(frame);
+                self.hand_over();
+            }
+            Role::Condition => {
+                let holds = output(0).is_some_and(|holds| holds.bool(0));
+                self.drop_frame(frame);
+                if !holds {
+                    self.end_fold();
                 }
             }
+            Role::Body(fold) => {
+                // An accumulator that nobody wants keeps its value.
+                let next = (0..fold.accumulators).zip(own).map(|(n, last)| output(n).unwrap_or(*last));
+                self.arguments.clear();
+                self.arguments.extend(next.chain([Constant::ints(&[(fold.step + 1) as i32])]));
+                for (slot, next) in self.values[frame.base..].iter_mut().zip(&self.arguments) {
+                    *slot = *next;
+                }
+                if let Some(Frame { role: Role::Body(fold), .. }) = self.frames.last_mut() {
+                    fold.step += 1;
+                }
+                self.turn();
+            }
         }
+    }
+
+    /// Ends the innermost fold: its accumulators are its outputs.
+    fn end_fold(&mut self) {
+        let Some(&frame) = self.frames.last() else { return };
+        let Role::Body(fold) = frame.role else { return };
+        self.arguments.clear();
+        self.arguments.extend(self.values[frame.base..].iter().take(fold.accumulators));
+        self.drop_frame(frame);
+        self.hand_over();
+    }
+
+    fn drop_frame(&mut self, frame: Frame) {
+        self.frames.pop();
         self.values.truncate(frame.base);
     }
 
-    fn step(&mut self, planned: &Planned, base: usize, step: &Step) {
-        let frame = &self.values[base..];
-        let value = evaluate(
-            &step.operation,
-            |value| read(planned, frame, value),
-            self.textures,
-            &mut self.arguments,
-        );
-        self.values[base + step.target.0 as usize - planned.known.len()] = value;
+    /// Hands the outputs in `arguments` to who called or folds.
+    fn hand_over(&mut self) {
+        let Some(caller) = self.frames.last() else {
+            std::mem::swap(&mut self.outputs, &mut self.arguments);
+            return;
+        };
+        let planned = &self.functions[caller.function];
+        for (n, target) in &planned.steps[caller.next - 1].results {
+            let output = self.arguments.get(*n as usize).copied().unwrap_or_else(zero);
+            self.values[caller.base + target.0 as usize - planned.known.len()] = output;
+        }
+    }
+}
+
+/// How many steps a fold takes, for what its `steps` is worth.
+pub fn fold_steps(fold: &Fold, steps: &Constant) -> u32 {
+    u32::try_from(steps.int(0)).unwrap_or(0).min(fold.most)
+}
+
+/// A fold at its start; `arguments` become its body's inputs.
+fn started(fold: &Fold, read: impl Fn(Value) -> Constant, arguments: &mut Vec<Constant>) -> Loop {
+    arguments.clear();
+    arguments.extend(fold.starts.iter().map(|start| read(*start)));
+    arguments.push(Constant::ints(&[0]));
+    arguments.extend(fold.captures.iter().map(|capture| read(*capture)));
+    Loop {
+        condition: fold.condition,
+        accumulators: fold.starts.len(),
+        captures: fold.captures.len(),
+        step: 0,
+        steps: fold_steps(fold, &read(fold.steps)),
     }
 }
 
@@ -119,7 +250,7 @@ fn read(planned: &Planned, frame: &[Constant], register: Value) -> Constant {
     }
 }
 
-/// What an operation is worth, calls apart. A view is worth its number. `scratch` is memory to
+/// What an operation is worth, calls and folds apart. A view is worth its number. `scratch` is memory to
 /// use again.
 pub fn evaluate(
     operation: &Operation,
@@ -162,7 +293,7 @@ pub fn evaluate(
             let index = usize::try_from(read(*index).int(0)).unwrap_or(0).min(last);
             table.get(index).copied().unwrap_or_else(zero)
         }
-        // The plan makes registers of these, and runs calls itself.
+        // The plan makes registers of these; calls and folds are run by the machine.
         Operation::Input(_)
         | Operation::Param(_)
         | Operation::Call(..)

@@ -2,19 +2,20 @@
 //! function, and the values that no pixel changes.
 //!
 //! A value is *known* when it depends on no input of its function (in the entry: on none that
-//! changes per pixel); it is computed here, once, calls included. All others become [`Step`]s.
+//! changes per pixel); it is computed here, once, calls and folds included. All others become
+//! [`Step`]s.
 //!
 //! A planned function keeps the graph's own [`Operation`]s, over *registers* instead of values:
 //! those below the number of known values are the function's constants, the others its frame, which
 //! begins with its inputs.
 
 use super::demand::demand;
-use super::machine::{Machine, evaluate};
+use super::machine::{Machine, evaluate, fold_steps};
 use super::texture::Texture;
 use crate::flat::Slope;
+use crate::pass::Pass;
 use crate::render::{RenderError, Request};
-use texgraph_compiler::Program;
-use texgraph_compiler::graph::{Axis, Constant, Function, Operation, Value};
+use texgraph_compiler::graph::{Axis, Constant, Function, FunctionId, Operation, Value};
 use texgraph_compiler::manifest;
 
 /// The most operations a pixel.
@@ -54,7 +55,7 @@ pub struct Planned {
     pub slots: usize,
     /// The register of each output; none for those that nobody wants.
     pub outputs: Vec<Option<Value>>,
-    /// Operations of a run, calls included.
+    /// Operations of a run at most, calls and folds included.
     cost: u64,
 }
 
@@ -62,9 +63,9 @@ pub struct Planned {
 pub struct Step {
     /// Its operands are registers.
     pub operation: Operation,
-    /// Where its result goes; not used by calls.
+    /// Where its result goes; not used by calls and folds.
     pub target: Value,
-    /// Of a call: which output goes to which register.
+    /// Of a call or a fold: which output goes to which register.
     pub results: Vec<(u32, Value)>,
 }
 
@@ -73,13 +74,13 @@ impl Plan {
     ///
     /// # Errors
     /// A pixel takes more than [`MAX_OPERATIONS`].
-    pub fn new(program: &Program, request: &Request, textures: &[Texture]) -> Result<Plan, RenderError> {
-        let graph = &program.texture().graph;
+    pub fn new(pass: &Pass<'_>, request: &Request, textures: &[Texture]) -> Result<Plan, RenderError> {
+        let graph = &pass.code.graph;
         let live = demand(graph, request.output);
         let entry = graph.functions.len().saturating_sub(1);
         let mut plan = Plan { functions: Vec::new(), entry, output: request.output, inputs: Vec::new() };
         for (id, function) in graph.functions.iter().enumerate() {
-            let mut planner = Planner::new(program, request, function, &live[id]);
+            let mut planner = Planner::new(pass, request, function, &live[id]);
             if id == entry {
                 planner.take_entry_inputs();
             } else {
@@ -110,16 +111,16 @@ enum State {
     Unknown,
     /// What it is worth.
     Known(Constant),
-    /// All outputs of a call that no pixel changes.
-    KnownCall(Vec<Constant>),
+    /// All outputs of a call, or accumulators of a fold, that no pixel changes.
+    KnownOutputs(Vec<Constant>),
     /// A place in the frame.
     Slot(usize),
-    /// The call that this step makes.
-    Call(usize),
+    /// All outputs of the call or fold that is this step.
+    Outputs(usize),
 }
 
 struct Planner<'a> {
-    program: &'a Program,
+    pass: &'a Pass<'a>,
     request: &'a Request,
     function: &'a Function,
     live: &'a [bool],
@@ -130,13 +131,13 @@ struct Planner<'a> {
 
 impl<'a> Planner<'a> {
     fn new(
-        program: &'a Program,
+        pass: &'a Pass<'a>,
         request: &'a Request,
         function: &'a Function,
         live: &'a [bool],
     ) -> Planner<'a> {
         let states = vec![State::Unknown; function.values.len()];
-        Planner { program, request, function, live, states, inputs: Vec::new(), planned: Planned::default() }
+        Planner { pass, request, function, live, states, inputs: Vec::new(), planned: Planned::default() }
     }
 
     /// Live values with their operations, operands first.
@@ -182,7 +183,7 @@ impl<'a> Planner<'a> {
 
     fn entry_input(&mut self, n: u32, source: fn(Slope) -> Source) -> State {
         let Some(slot) = self.function.inputs.get(n as usize) else { return State::Unknown };
-        let input = self.program.manifest.inputs.iter().find(|input| input.name == slot.name);
+        let input = self.pass.inputs.iter().find(|input| input.name == slot.name);
         let draw = input.and_then(|input| self.request.draw().value(&input.name, input.ty));
         let slope = Slope::of(&slot.name, self.request);
         match (draw, source(slope)) {
@@ -202,7 +203,7 @@ impl<'a> Planner<'a> {
             if *self.state(value) != State::Unknown || !self.can_be_known(operation) {
                 continue;
             }
-            work = work.saturating_add(cost(operation, callees));
+            work = work.saturating_add(self.cost(operation, callees));
             bound(work)?;
             if let Some(state) = self.known(operation, &mut machine, textures) {
                 self.set(value, state);
@@ -211,11 +212,12 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    /// Whether all operands are known.
+    /// Whether all operands are known. The start of an accumulator that nobody wants does not count.
     fn can_be_known(&self, operation: &Operation) -> bool {
         let mut known = !matches!(operation, Operation::Input(_) | Operation::Derivative(..));
         operation.for_operands(|operand| {
-            known &= matches!(self.state(operand), State::Known(_) | State::KnownCall(_))
+            let is_known = matches!(self.state(operand), State::Known(_) | State::KnownOutputs(_));
+            known &= is_known || !self.live[operand.0 as usize];
         });
         known
     }
@@ -228,18 +230,19 @@ impl<'a> Planner<'a> {
         };
         match operation {
             Operation::Param(id) => {
-                let name = &self.program.texture().graph.params.get(id.0 as usize)?.name;
-                let param = self.program.manifest.params.iter().find(|param| param.name == *name)?;
+                let name = &self.pass.code.graph.params.get(id.0 as usize)?.name;
+                let param = self.pass.manifest.params.iter().find(|param| param.name == *name)?;
                 Some(State::Known(constant(&self.request.settings.value(param))))
             }
             Operation::Output(call, n) => {
-                let State::KnownCall(outputs) = self.state(*call) else { return None };
+                let State::KnownOutputs(outputs) = self.state(*call) else { return None };
                 outputs.get(*n as usize).map(|output| State::Known(*output))
             }
             Operation::Call(id, arguments) => {
                 let outputs = machine.run(id.0 as usize, arguments.iter().map(|value| read(*value)));
-                Some(State::KnownCall(outputs.to_vec()))
+                Some(State::KnownOutputs(outputs.to_vec()))
             }
+            Operation::Fold(fold) => Some(State::KnownOutputs(machine.run_fold(fold, read).to_vec())),
             _ => Some(State::Known(evaluate(operation, read, textures, &mut Vec::new()))),
         }
     }
@@ -253,16 +256,16 @@ impl<'a> Planner<'a> {
             }
             if let Operation::Output(call, n) = operation {
                 let target = self.new_slot(value);
-                if let State::Call(step) = self.state(*call) {
+                if let State::Outputs(step) = self.state(*call) {
                     let step = *step;
                     self.planned.steps[step].results.push((*n, target));
                 }
                 continue;
             }
-            self.planned.cost = self.planned.cost.saturating_add(cost(operation, callees));
+            self.planned.cost = self.planned.cost.saturating_add(self.cost(operation, callees));
             let moved = operation.map_operands(|operand| self.register(&known, operand));
-            let target = if matches!(operation, Operation::Call(..)) {
-                self.set(value, State::Call(self.planned.steps.len()));
+            let target = if matches!(operation, Operation::Call(..) | Operation::Fold(_)) {
+                self.set(value, State::Outputs(self.planned.steps.len()));
                 Value(0)
             } else {
                 self.new_slot(value)
@@ -282,13 +285,30 @@ impl<'a> Planner<'a> {
         Value((self.planned.known.len() + self.planned.slots - 1) as u32)
     }
 
-    /// The register of a value that is known or has been scheduled. A call has none: only its
-    /// outputs are read.
+    /// The register of a value that is known or has been scheduled. A call or fold has none: only
+    /// its outputs are read; nor has a value that nobody wants, and any does in its place.
     fn register(&self, known: &[Option<u32>], value: Value) -> Value {
         match (known[value.0 as usize], self.state(value)) {
             (Some(register), _) => Value(register),
             (None, State::Slot(slot)) => Value((self.planned.known.len() + slot) as u32),
             _ => Value(0),
+        }
+    }
+
+    /// The work of one operation, that of the functions it runs included.
+    fn cost(&self, operation: &Operation, callees: &[Planned]) -> u64 {
+        let of = |id: FunctionId| callees.get(id.0 as usize).map_or(0, |callee| callee.cost);
+        match operation {
+            Operation::Call(id, _) => of(*id).saturating_add(1),
+            Operation::Fold(fold) => {
+                let steps = match self.state(fold.steps) {
+                    State::Known(steps) => fold_steps(fold, steps),
+                    _ => fold.most,
+                };
+                let step = of(fold.body).saturating_add(fold.condition.map_or(0, of)).saturating_add(1);
+                step.saturating_mul(u64::from(steps)).saturating_add(1)
+            }
+            _ => 1,
         }
     }
 
@@ -303,16 +323,6 @@ impl<'a> Planner<'a> {
             _ => None,
         });
         numbered.collect()
-    }
-}
-
-/// The work of one operation, that of its callee included.
-fn cost(operation: &Operation, callees: &[Planned]) -> u64 {
-    match operation {
-        Operation::Call(id, _) => {
-            callees.get(id.0 as usize).map_or(1, |callee| callee.cost.saturating_add(1))
-        }
-        _ => 1,
     }
 }
 

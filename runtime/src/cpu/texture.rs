@@ -1,13 +1,15 @@
 //! Textures of the CPU renderer: tables with their texels decoded.
 
+use crate::bake::Bake;
+use crate::pass::Pass;
 use crate::render::RenderError;
 use crate::resource::{Tables, srgb_to_linear};
 use glam::{IVec2, IVec4, Vec4};
 use half::f16;
 use rayon::iter::ParallelIterator;
 use rayon::slice::ParallelSlice;
-use texgraph_compiler::graph::{Constant, Graph};
-use texgraph_compiler::manifest::{self, Filter, Format, Manifest, Table, Wrap};
+use texgraph_compiler::graph::{Constant, ResourceView};
+use texgraph_compiler::manifest::{self, Filter, Format, Table, Wrap};
 
 /// A texture with its sampler.
 pub struct Texture {
@@ -82,23 +84,42 @@ impl Level {
 }
 
 /// The textures of all views of a graph, in their order; a single texel for a view that nothing
-/// reads.
+/// reads, and for a bake until it is drawn.
 ///
 /// # Errors
 /// The bytes of one are missing or too few.
-pub fn decode_all(graph: &Graph, manifest: &Manifest, tables: &Tables) -> Result<Vec<Texture>, RenderError> {
-    let decode_view = |view: &texgraph_compiler::graph::ResourceView| {
-        let resource = manifest.resources.get(view.resource as usize);
+pub fn decode_all(pass: &Pass<'_>, bakes: &[Bake<'_>], tables: &Tables) -> Result<Vec<Texture>, RenderError> {
+    let decode_view = |view: &ResourceView| {
+        let resource = pass.manifest.resources.get(view.resource as usize);
         let texture = resource.and_then(|r| r.textures.iter().find(|texture| texture.field == view.field));
         let Some(texture) = texture else { return Ok(Texture::single()) };
+        if bakes.iter().any(|bake| fills(bake, view)) {
+            return Ok(Texture::single());
+        }
         let bytes = tables.get(view.resource as usize, view.field);
         let whole = bytes.zip(texture.table.as_ref());
         whole.and_then(|(bytes, table)| decode(texture, table, bytes)).ok_or_else(|| RenderError::NoTable {
-            resource: graph.resources.get(view.resource as usize).map_or(String::new(), |r| r.name.clone()),
+            resource: resource.map_or(String::new(), |r| r.name.clone()),
             field: view.field.to_string(),
         })
     };
-    graph.views.iter().map(decode_view).collect()
+    pass.code.graph.views.iter().map(decode_view).collect()
+}
+
+/// Whether a view shows what a bake draws.
+fn fills(bake: &Bake<'_>, view: &ResourceView) -> bool {
+    bake.resource == view.resource as usize && bake.texture.field == view.field
+}
+
+/// Gives a bake's texture its texels.
+pub fn replace(textures: &mut [Texture], bake: &Bake<'_>, texels: &[u8]) {
+    for (texture, view) in textures.iter_mut().zip(&bake.pass.code.graph.views) {
+        if fills(bake, view)
+            && let Some(decoded) = decode(bake.texture, bake.table, texels)
+        {
+            *texture = decoded;
+        }
+    }
 }
 
 /// None where the table and its bytes do not fit.

@@ -1,19 +1,18 @@
 //! Bind groups from the manifest: the uniform block, textures and samplers, wherever it puts them.
 
-use super::{Gpu, texture};
+use super::Gpu;
+use super::texture::{self, Textures};
+use crate::pass::Pass;
 use crate::render::RenderError;
-use crate::resource::Tables;
 use std::collections::BTreeMap;
 use texgraph_compiler::manifest::{Manifest, SampleKind, Texture};
 
-/// What a program's shader reads, ready to be set.
+/// What a pass reads, ready to be set.
 pub struct Bindings {
     /// The layout of each group from 0 on; a number that is not used has an empty one.
     pub layouts: Vec<wgpu::BindGroupLayout>,
     /// The groups, for the same numbers.
     pub groups: Vec<wgpu::BindGroup>,
-    /// The uniform block, if there is one.
-    pub uniform: Option<wgpu::Buffer>,
 }
 
 /// A thing to bind.
@@ -30,18 +29,24 @@ type Slots = BTreeMap<u32, BTreeMap<u32, Bound>>;
 const MAX_GROUPS: u32 = 4;
 
 impl Bindings {
-    /// Uploads all textures and makes the groups.
-    pub fn new(gpu: &Gpu, manifest: &Manifest, tables: &Tables) -> Result<Bindings, RenderError> {
+    /// Makes the groups of a pass: the uniform block, and the textures that the manifest says it
+    /// reads.
+    pub fn new(
+        gpu: &Gpu,
+        pass: &Pass<'_>,
+        textures: &Textures,
+        uniform: Option<&wgpu::Buffer>,
+    ) -> Result<Bindings, RenderError> {
         let mut slots = Slots::new();
-        let uniform = manifest.uniform.as_ref().map(|uniform| {
-            let buffer = uniform_buffer(gpu, u64::from(uniform.size));
-            slots.entry(uniform.group).or_default().insert(uniform.binding, Bound::Uniform(buffer.clone()));
-            buffer
-        });
-        for (index, resource) in manifest.resources.iter().enumerate() {
-            for texture in &resource.textures {
-                let view = texture::upload(gpu, tables, index, resource, texture)?;
-                bind_texture(gpu, &mut slots, texture, view);
+        if let (Some(described), Some(buffer)) = (&pass.manifest.uniform, uniform) {
+            let bound = Bound::Uniform(buffer.clone());
+            slots.entry(described.group).or_default().insert(described.binding, bound);
+        }
+        for (resource, field) in &pass.described.reads {
+            let described = pass.manifest.resources.get(*resource as usize);
+            let texture = described.and_then(|r| r.textures.iter().find(|texture| texture.field == *field));
+            if let (Some(texture), Some(uploaded)) = (texture, textures.get(*resource as usize, field)) {
+                bind_texture(gpu, &mut slots, texture, uploaded.view.clone());
             }
         }
         let count = slots.keys().next_back().map_or(0, |last| last.saturating_add(1));
@@ -51,17 +56,19 @@ impl Bindings {
         let empty = BTreeMap::new();
         let made = (0..count).map(|group| make_group(gpu, slots.get(&group).unwrap_or(&empty)));
         let (layouts, groups) = made.unzip();
-        Ok(Bindings { layouts, groups, uniform })
+        Ok(Bindings { layouts, groups })
     }
 }
 
-fn uniform_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+/// A buffer for a program's uniform block, if it has one.
+pub fn uniform_buffer(gpu: &Gpu, manifest: &Manifest) -> Option<wgpu::Buffer> {
+    let uniform = manifest.uniform.as_ref()?;
+    Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("uniform block"),
-        size,
+        size: u64::from(uniform.size),
         usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
-    })
+    }))
 }
 
 fn bind_texture(gpu: &Gpu, slots: &mut Slots, texture: &Texture, view: wgpu::TextureView) {

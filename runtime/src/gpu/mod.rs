@@ -8,6 +8,7 @@
 
 mod adapter;
 mod bindings;
+mod drawing;
 mod pipeline;
 mod scene;
 mod texture;

@@ -7,10 +7,10 @@
 use super::Gpu;
 use super::bindings::Bindings;
 use crate::flat::Slope;
-use crate::render::{RenderError, Request};
+use crate::pass::Pass;
+use crate::render::Request;
 use std::fmt::Write;
-use texgraph_compiler::Program;
-use texgraph_compiler::manifest::{Input, Manifest, Scalar, Source, Type, Value};
+use texgraph_compiler::manifest::{Input, Scalar, Source, Type, Value};
 
 /// What a pixel is rendered to; it keeps every bit of the shader's floats.
 pub const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
@@ -19,31 +19,24 @@ pub const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 const CLIP_BYTES: u64 = 8;
 
 /// Inputs that come as varyings, with their location.
-fn varyings(manifest: &Manifest) -> impl Iterator<Item = (&Input, u32)> {
-    manifest.inputs.iter().filter_map(|input| match input.source {
+fn varyings(inputs: &[Input]) -> impl Iterator<Item = (&Input, u32)> {
+    inputs.iter().filter_map(|input| match input.source {
         Source::Varying(location) => Some((input, location)),
         Source::Uniform(_) | Source::Member => None,
     })
 }
 
 /// Builds the pipeline that draws one output.
-pub fn build(
-    gpu: &Gpu,
-    program: &Program,
-    bindings: &Bindings,
-    location: u32,
-) -> Result<wgpu::RenderPipeline, RenderError> {
-    let manifest = &program.manifest;
-    let pass = manifest.passes.last().ok_or_else(|| RenderError::Gpu("the program has no pass".into()))?;
+pub fn build(gpu: &Gpu, pass: &Pass<'_>, bindings: &Bindings, location: u32) -> wgpu::RenderPipeline {
     let layouts: Vec<_> = bindings.layouts.iter().map(Some).collect();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,
         bind_group_layouts: &layouts,
         immediate_size: 0,
     });
-    let vertex = shader(gpu, "corners", vertex_stage(manifest));
-    let fragment = shader(gpu, &pass.name, program.texture().wgsl.clone());
-    let (attributes, stride) = attributes(manifest);
+    let vertex = shader(gpu, "corners", vertex_stage(&pass.inputs));
+    let fragment = shader(gpu, &pass.described.name, pass.code.wgsl.clone());
+    let (attributes, stride) = attributes(&pass.inputs);
     let corners = wgpu::VertexBufferLayout {
         array_stride: stride,
         step_mode: wgpu::VertexStepMode::Vertex,
@@ -55,8 +48,8 @@ pub fn build(
         blend: None,
         write_mask: wgpu::ColorWrites::ALL,
     }));
-    Ok(gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(&pass.name),
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(&pass.described.name),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &vertex,
@@ -69,13 +62,13 @@ pub fn build(
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &fragment,
-            entry_point: Some(&pass.entry_point),
+            entry_point: Some(&pass.described.entry_point),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &targets,
         }),
         multiview_mask: None,
         cache: None,
-    }))
+    })
 }
 
 fn shader(gpu: &Gpu, label: &str, text: String) -> wgpu::ShaderModule {
@@ -84,9 +77,9 @@ fn shader(gpu: &Gpu, label: &str, text: String) -> wgpu::ShaderModule {
 }
 
 /// The text of the vertex stage.
-fn vertex_stage(manifest: &Manifest) -> String {
+fn vertex_stage(inputs: &[Input]) -> String {
     let (mut members, mut parameters, mut values) = (String::new(), String::new(), String::new());
-    for (n, (input, location)) in (1..).zip(varyings(manifest)) {
+    for (n, (input, location)) in (1..).zip(varyings(inputs)) {
         let ty = wgsl_type(input.ty);
         let flat = if input.ty.scalar == Scalar::Float { "" } else { " @interpolate(flat)" };
         // Writing to a String cannot fail.
@@ -107,11 +100,11 @@ fn wgsl_type(ty: Type) -> String {
 }
 
 /// The attributes of a corner, and the bytes from one to the next.
-fn attributes(manifest: &Manifest) -> (Vec<wgpu::VertexAttribute>, u64) {
+fn attributes(inputs: &[Input]) -> (Vec<wgpu::VertexAttribute>, u64) {
     let clip = wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x2, offset: 0, shader_location: 0 };
     let mut attributes = vec![clip];
     let mut offset = CLIP_BYTES;
-    for (n, (input, _)) in (1..).zip(varyings(manifest)) {
+    for (n, (input, _)) in (1..).zip(varyings(inputs)) {
         attributes.push(wgpu::VertexAttribute {
             format: vertex_format(input.ty),
             offset,
@@ -137,14 +130,14 @@ fn vertex_format(ty: Type) -> wgpu::VertexFormat {
 
 /// The bytes of the three corners for a part of the picture: its first pixel and its size. The
 /// triangle reaches twice as far as the part, right and down.
-pub fn corners(manifest: &Manifest, request: &Request, first: [u32; 2], size: [u32; 2]) -> Vec<u8> {
+pub fn corners(inputs: &[Input], request: &Request, first: [u32; 2], size: [u32; 2]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for [right, down] in [[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]] {
         let clip = [right * 2.0 - 1.0, 1.0 - down * 2.0];
         bytes.extend(clip.iter().flat_map(|x: &f32| x.to_le_bytes()));
         let x = f64::from(first[0]) + f64::from(right) * f64::from(size[0]);
         let y = f64::from(first[1]) + f64::from(down) * f64::from(size[1]);
-        for (input, _) in varyings(manifest) {
+        for (input, _) in varyings(inputs) {
             bytes.extend(corner(input, request, x, y));
         }
     }

@@ -1,21 +1,64 @@
 //! Uploads tables as textures and makes samplers, as the manifest describes them.
 
 use super::Gpu;
+use crate::bake::Bake;
 use crate::render::RenderError;
 use crate::resource::Tables;
-use texgraph_compiler::manifest::{Filter, Format, Level, Resource, Sampler, Texture, ViewDimension, Wrap};
+use std::collections::BTreeMap;
+use texgraph_compiler::manifest::{
+    Filter, Format, Level, Manifest, Sampler, Table, Texture, ViewDimension, Wrap,
+};
 
-/// A texture of a resource, all levels uploaded.
-pub fn upload(
-    gpu: &Gpu,
-    tables: &Tables,
-    index: usize,
-    resource: &Resource,
-    texture: &Texture,
-) -> Result<wgpu::TextureView, RenderError> {
-    let missing = || RenderError::NoTable { resource: resource.name.clone(), field: texture.field.clone() };
-    let table = texture.table.as_ref().ok_or_else(missing)?;
-    let bytes = tables.get(index, &texture.field).ok_or_else(missing)?;
+/// A texture on the device.
+pub struct Uploaded {
+    target: wgpu::Texture,
+    /// All of it, in the shape that shaders read.
+    pub view: wgpu::TextureView,
+}
+
+/// The textures of a program on the device, by resource and field.
+pub struct Textures(BTreeMap<(usize, String), Uploaded>);
+
+impl Textures {
+    /// Uploads all textures, those of bakes without texels.
+    pub fn upload(
+        gpu: &Gpu,
+        manifest: &Manifest,
+        bakes: &[Bake<'_>],
+        tables: &Tables,
+    ) -> Result<Textures, RenderError> {
+        let mut textures = BTreeMap::new();
+        for (index, resource) in manifest.resources.iter().enumerate() {
+            for texture in &resource.textures {
+                let missing =
+                    || RenderError::NoTable { resource: resource.name.clone(), field: texture.field.clone() };
+                let table = texture.table.as_ref().ok_or_else(missing)?;
+                let uploaded = create(gpu, texture, table);
+                if !bakes.iter().any(|bake| bake.resource == index) {
+                    let bytes = tables.get(index, &texture.field).ok_or_else(missing)?;
+                    write(gpu, &uploaded, table, bytes).ok_or_else(missing)?;
+                }
+                textures.insert((index, texture.field.clone()), uploaded);
+            }
+        }
+        Ok(Textures(textures))
+    }
+
+    /// A field of a resource.
+    pub fn get(&self, resource: usize, field: &str) -> Option<&Uploaded> {
+        self.0.get(&(resource, field.to_owned()))
+    }
+
+    /// Gives a bake's texture its texels.
+    pub fn replace(&self, gpu: &Gpu, bake: &Bake<'_>, texels: &[u8]) -> Result<(), RenderError> {
+        let uploaded = self.get(bake.resource, &bake.texture.field);
+        let written = uploaded.and_then(|uploaded| write(gpu, uploaded, bake.table, texels));
+        written.ok_or_else(|| RenderError::Gpu("a bake has no texture".to_owned()))
+    }
+}
+
+/// A texture without texels.
+fn create(gpu: &Gpu, texture: &Texture, table: &Table) -> Uploaded {
     let target = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(&texture.name),
         size: extent(table.width, table.height, table.layers),
@@ -29,14 +72,19 @@ pub fn upload(
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (number, level) in table.levels.iter().enumerate() {
-        let texels = level_bytes(level, bytes).ok_or_else(missing)?;
-        write_level(gpu, &target, number as u32, level, texels);
-    }
-    Ok(target.create_view(&wgpu::TextureViewDescriptor {
+    let view = target.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(view_dimension(texture.view)),
         ..wgpu::TextureViewDescriptor::default()
-    }))
+    });
+    Uploaded { target, view }
+}
+
+/// Writes all levels; none where there are too few bytes.
+fn write(gpu: &Gpu, uploaded: &Uploaded, table: &Table, bytes: &[u8]) -> Option<()> {
+    for (number, level) in (0..).zip(&table.levels) {
+        write_level(gpu, &uploaded.target, number, level, level_bytes(level, bytes)?);
+    }
+    Some(())
 }
 
 fn level_bytes<'a>(level: &Level, bytes: &'a [u8]) -> Option<&'a [u8]> {

@@ -10,8 +10,8 @@ mod image;
 mod indices;
 mod patterns;
 mod permutation;
-mod pyramid;
-mod table;
+pub(crate) mod pyramid;
+pub(crate) mod table;
 
 pub use encoding::{SrgbEncoder, srgb_to_linear};
 

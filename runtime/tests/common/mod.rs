@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // every test file uses its own part
 
+pub mod bakes;
+pub mod folds;
 pub mod programs;
 
 use std::path::Path;

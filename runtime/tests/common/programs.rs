@@ -11,29 +11,29 @@ use texgraph_compiler::manifest::{self, Filter, Input, Output, Param, Recipe, So
 use texgraph_compiler::{Pass, Program};
 use texgraph_runtime::resource::{Tables, load};
 
-const VEC2: Type = Type::Vector(Scalar::Float, 2);
-const VEC4: Type = Type::Vector(Scalar::Float, 4);
+pub const VEC2: Type = Type::Vector(Scalar::Float, 2);
+pub const VEC4: Type = Type::Vector(Scalar::Float, 4);
 
-fn float(width: u8) -> manifest::Type {
+pub fn float(width: u8) -> manifest::Type {
     manifest::Type { scalar: manifest::Scalar::Float, width }
 }
 
 /// The intrinsic of a name whose signature has a text in it.
-fn intrinsic(name: &str, signature: &str) -> Intrinsic {
+pub fn intrinsic(name: &str, signature: &str) -> Intrinsic {
     let fits = |i: &Intrinsic| i.row().name == name && i.row().signature.contains(signature);
     Intrinsic::all().find(fits).expect("there is such an intrinsic")
 }
 
-fn varying(name: &str, width: u8, location: u32) -> Input {
+pub fn varying(name: &str, width: u8, location: u32) -> Input {
     Input { name: name.into(), ty: float(width), source: Source::Varying(location) }
 }
 
-fn output(name: &str, width: u8, location: u32) -> Output {
+pub fn output(name: &str, width: u8, location: u32) -> Output {
     Output { name: name.into(), ty: float(width), location, is_color: name == "color" }
 }
 
 /// A program with the input `uv`, a param `scale` in its uniform block, and one output.
-fn program(graph: Graph, wgsl: &str) -> Program {
+pub fn program(graph: Graph, wgsl: &str) -> Program {
     let mut manifest = manifest();
     manifest.inputs = vec![varying("uv", 2, 0)];
     manifest.outputs = vec![output("color", 4, 0)];
@@ -49,7 +49,7 @@ fn program(graph: Graph, wgsl: &str) -> Program {
     Program { passes: vec![Pass { graph, wgsl: wgsl.into() }], manifest }
 }
 
-fn scale_param() -> texgraph_compiler::graph::Param {
+pub fn scale_param() -> texgraph_compiler::graph::Param {
     texgraph_compiler::graph::Param {
         name: "scale".into(),
         label: String::new(),
@@ -67,7 +67,26 @@ fn with_resource(
     wrap: Wrap,
     filter: Filter,
 ) -> (Program, Tables) {
-    let resource = resource(recipe, 0, wrap, filter);
+    set_resources(&mut program, vec![resource(recipe, 0, wrap, filter)]);
+    let tables = load(&mut program, &project(folder)).expect("the resource loads");
+    (program, tables)
+}
+
+/// Gives a program its resources, resource n read through view n by all its passes.
+pub fn set_resources(program: &mut Program, resources: Vec<manifest::Resource>) {
+    let views: Vec<ResourceView> = (0..).zip(&resources).map(|(n, resource)| view_of(n, resource)).collect();
+    let reads: Vec<(u32, String)> = views.iter().map(|view| (view.resource, view.field.to_owned())).collect();
+    program.manifest.resources = resources;
+    let described = graph_of(&program.manifest).resources;
+    for (pass, described_pass) in program.passes.iter_mut().zip(&mut program.manifest.passes) {
+        pass.graph.views.clone_from(&views);
+        pass.graph.resources.clone_from(&described);
+        described_pass.reads.clone_from(&reads);
+    }
+}
+
+/// The view of a resource's only texture.
+fn view_of(n: u32, resource: &manifest::Resource) -> ResourceView {
     let texture = &resource.textures[0];
     let view = View {
         dimension: match texture.view {
@@ -81,12 +100,7 @@ fn with_resource(
         },
     };
     let field = ["pixels", "layers", "table", "map"].into_iter().find(|field| *field == texture.field);
-    let field = field.expect("a known field");
-    program.passes[0].graph.views = vec![ResourceView { resource: 0, field, view }];
-    program.manifest.resources = vec![resource];
-    program.passes[0].graph.resources = graph_of(&program.manifest).resources;
-    let tables = load(&mut program, &project(folder)).expect("the resource loads");
-    (program, tables)
+    ResourceView { resource: n, field: field.expect("a known field"), view }
 }
 
 /// `color = image.sample(uv * scale)`, with the gradient of its coordinate.

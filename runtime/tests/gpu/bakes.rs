@@ -1,0 +1,121 @@
+//! Bakes on the GPU.
+
+use super::common::bakes::{bake_of_a_bake, baked, constant, pattern, program_of, shown, single, smooth};
+use super::{FILTERED, compare};
+use libtest_mimic::Failed;
+use texgraph_compiler::Program;
+use texgraph_compiler::manifest::{Filter, Format, Value, Wrap};
+use texgraph_runtime::gpu::Gpu;
+use texgraph_runtime::render::{RenderError, Request};
+use texgraph_runtime::resource::Tables;
+
+fn with(program: &Program, mut request: Request, name: &str, value: &[f32]) -> Request {
+    request.settings.set(&program.manifest, name, Value::Float(value.to_vec())).expect("it is set");
+    request
+}
+
+/// Every format and wrap, from near to far: all levels.
+pub fn bakes_agree(gpu: &Gpu) -> Result<(), Failed> {
+    let formats = [Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8UnormSrgb, Format::Rgba8Snorm];
+    for format in formats {
+        for size in [[64, 64], [37, 20]] {
+            let mut resource = baked(0, size, format);
+            for (wrap, filter) in [(Wrap::Repeat, Filter::Linear), (Wrap::Mirror, Filter::Nearest)] {
+                if let Some(sampler) = &mut resource.textures[0].sampler {
+                    (sampler.wrap, sampler.filter) = (wrap, filter);
+                }
+                let program = program_of(vec![pattern(0), shown(0)], vec![resource.clone()]);
+                for side in [160, 40, 12] {
+                    let request =
+                        Request { region: [-0.313, 0.107, 1.303, 1.719], ..Request::new([side, side]) };
+                    compare(gpu, &program, &Tables::default(), &request, FILTERED)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A bake of more than one tile, shown texel by texel where four of them meet. Neighbouring texels
+/// are a fifth apart.
+pub fn large_bakes_agree(gpu: &Gpu) -> Result<(), Failed> {
+    let size = [1500, 1100];
+    let program = single(pattern(0), size, Format::Rgba16Float);
+    let bound = |texel: u32, axis: usize| f64::from(texel) / f64::from(size[axis]);
+    let region = [bound(992, 0), bound(992, 1), bound(1056, 0), bound(1056, 1)];
+    let request = Request { region, ..Request::new([64, 64]) };
+    let request = with(&program, request, "scale", &[300.0, 220.0]);
+    compare(gpu, &program, &Tables::default(), &request, FILTERED)
+}
+
+pub fn bakes_of_bakes_agree(gpu: &Gpu) -> Result<(), Failed> {
+    let program = bake_of_a_bake();
+    for side in [100, 16] {
+        compare(gpu, &program, &Tables::default(), &Request::new([side, side]), FILTERED)?;
+        let request = with(&program, Request::new([side, side]), "tint", &[0.0, 1.0, 1.0, 1.0]);
+        compare(gpu, &program, &Tables::default(), &request, FILTERED)?;
+    }
+    Ok(())
+}
+
+pub fn bakes_are_drawn_again_only_for_their_params(gpu: &Gpu) -> Result<(), Failed> {
+    let program = bake_of_a_bake();
+    let mut scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
+    let mut expect = |request: &Request, drawn: u64| {
+        let picture = scene.render(request, &|_| {}).map_err(|error| error.to_string())?;
+        let mut fresh = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
+        let anew = fresh.render(request, &|_| {}).map_err(|error| error.to_string())?;
+        if scene.bakes_drawn() != drawn {
+            return Err(format!("{} bakes were drawn, not {drawn}", scene.bakes_drawn()));
+        }
+        if picture == anew { Ok(picture) } else { Err("a kept bake is not as a new one".to_owned()) }
+    };
+    let request = Request::new([20, 20]);
+    let first = expect(&request, 2)?;
+    expect(&Request { time: 2.0, region: [0.5, 0.5, 1.0, 1.0], ..request.clone() }, 2)?;
+    let request = with(&program, request, "gain", &[0.25]);
+    let gained = expect(&request, 2)?;
+    let request = with(&program, request, "tint", &[1.0, 0.0, 1.0, 1.0]);
+    let tinted = expect(&request, 3)?;
+    let request = with(&program, request, "scale", &[5.0, 1.0]);
+    let scaled = expect(&request, 5)?;
+    let pictures = [&first, &gained, &tinted, &scaled];
+    if pictures.windows(2).any(|pair| pair[0] == pair[1]) {
+        return Err("a param changes nothing: it proves nothing".into());
+    }
+    Ok(())
+}
+
+pub fn values_out_of_range_are_stored_alike(gpu: &Gpu) -> Result<(), Failed> {
+    let formats = [Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8UnormSrgb, Format::Rgba8Snorm];
+    for format in formats {
+        let program = single(constant(&[1e30, -1e30, 0.5, 0.25]), [4, 4], format);
+        let request = Request::new([3, 3]);
+        let ours = texgraph_runtime::cpu::render(&program, &Tables::default(), &request, &|_| {})
+            .map_err(|error| error.to_string())?;
+        let mut scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| error.to_string())?;
+        let theirs = scene.render(&request, &|_| {}).map_err(|error| error.to_string())?;
+        let difference = ours.difference(&theirs, FILTERED);
+        if difference.within < 1.0 {
+            return Err(format!("{format:?}: {difference:?}").into());
+        }
+    }
+    Ok(())
+}
+
+pub fn a_broken_bake_is_an_error_with_its_name(gpu: &Gpu) -> Result<(), Failed> {
+    let mut program = single(smooth(), [4, 4], Format::Rgba16Float);
+    program.passes[0].wgsl = "@fragment fn main() -> @location(0) vec4<f32> { return 1; }".into();
+    match gpu.prepare(&program, &Tables::default(), 0) {
+        Err(RenderError::Bake { name, error }) if name == "r0" && matches!(*error, RenderError::Gpu(_)) => {}
+        Err(other) => return Err(other.to_string().into()),
+        Ok(_) => return Err("it was accepted".into()),
+    }
+    let mut program = single(smooth(), [4, 4], Format::Rgba16Float);
+    program.manifest.passes[1].reads.clear();
+    match gpu.prepare(&program, &Tables::default(), 0) {
+        Err(RenderError::Gpu(_)) => Ok(()),
+        Err(other) => Err(other.to_string().into()),
+        Ok(_) => Err("what a pass does not say that it reads was bound all the same".into()),
+    }
+}
