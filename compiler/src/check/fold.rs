@@ -86,7 +86,9 @@ impl<'a> Checker<'a> {
         let types = starts.iter().map(|start| f.builder.ty(*start)).collect::<Vec<Type>>();
         f.enter(&format!("{}_step", f.current));
         let accumulators = accumulators(f, fold, &types);
-        let step = f.builder.input(format!("{}_step", fold.variable.text), Type::INT);
+        let plain = steps.are_places(f);
+        let name = if plain { fold.variable.text.clone() } else { format!("{}_step", fold.variable.text) };
+        let step = f.builder.input(name, Type::INT);
         let at = steps.place_of(f, step);
         f.builder.name(at, &fold.variable.text);
         f.scopes[f.base].insert(&fold.variable.text, Wire::Value(at));

@@ -260,6 +260,12 @@ fn total(b: &mut Builder, counts: &[Value], max: Option<u32>) -> Value {
 }
 
 impl Steps {
+    /// Whether the number of a step is its place.
+    pub(super) fn are_places(&self, f: &Frame<'_>) -> bool {
+        let outer = f.builder_of(f.layers.len().saturating_sub(1));
+        self.counts.len() == 1 && outer.as_constant(self.low).is_some_and(|low| low.int(0) == 0)
+    }
+
     /// The place of a step, ints, in the function of the fold's body.
     pub(super) fn place_of(&self, f: &mut Frame<'_>, step: Value) -> Value {
         let level = f.layers.len().saturating_sub(1);
