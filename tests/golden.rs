@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use texgraph_compiler::module::Loader;
-use texgraph_compiler::{Compiled, Form, Library, Options, compile, diagnostic::render};
+use texgraph_compiler::{Compiled, Form, Library, Options, Pass, Program, compile, diagnostic::render};
 
 /// Files below a folder, with parent folders allowed: tests share pictures.
 struct Folder(PathBuf);
@@ -35,6 +35,15 @@ fn compiled(library: &Library, file: &Path, options: &Options) -> Compiled {
         .unwrap_or_else(|failure| panic!("{}", render::human(&failure.sources, &failure.diagnostics)))
 }
 
+/// The shaders of all passes, bakes with their names.
+fn all_shaders(program: &Program) -> String {
+    let named = program.passes.iter().zip(&program.manifest.passes).map(|(pass, described)| {
+        let mark = described.bake.map_or(String::new(), |_| format!("// {}\n", described.shader));
+        format!("{mark}{}", pass.wgsl)
+    });
+    named.collect::<Vec<_>>().join("\n")
+}
+
 fn files() -> Vec<PathBuf> {
     [sources(&root().join("tests/golden")), sources(&root().join("examples"))].concat()
 }
@@ -48,7 +57,7 @@ fn wgsl_and_manifest_are_as_recorded() {
             for (form, suffix) in [(Form::Complete, "complete"), (Form::Library, "library")] {
                 let options = Options { form, ..Options::default() };
                 let program = compiled(&library, &file, &options).program;
-                insta::assert_snapshot!(format!("{name}.{suffix}.wgsl"), program.texture().wgsl);
+                insta::assert_snapshot!(format!("{name}.{suffix}.wgsl"), all_shaders(&program));
                 if form == Form::Complete {
                     insta::assert_snapshot!(format!("{name}.ron"), program.manifest.to_ron());
                 }
@@ -63,13 +72,14 @@ fn every_shader_reads_back_and_samples_explicitly() {
     for file in files() {
         for form in [Form::Complete, Form::Library] {
             let options = Options { form, group: 2, first_binding: 100, ..Options::default() };
-            let wgsl = compiled(&library, &file, &options).program.texture().wgsl.clone();
-            assert!(!wgsl.contains("textureSample("), "{}: an implicit level", file.display());
-            let module = naga::front::wgsl::parse_str(&wgsl)
-                .unwrap_or_else(|error| panic!("{}: {}", file.display(), error.emit_to_string(&wgsl)));
-            let flags = naga::valid::ValidationFlags::all();
-            let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
-            validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", file.display()));
+            for Pass { wgsl, .. } in compiled(&library, &file, &options).program.passes {
+                assert!(!wgsl.contains("textureSample("), "{}: an implicit level", file.display());
+                let module = naga::front::wgsl::parse_str(&wgsl)
+                    .unwrap_or_else(|error| panic!("{}: {}", file.display(), error.emit_to_string(&wgsl)));
+                let flags = naga::valid::ValidationFlags::all();
+                let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::empty());
+                validator.validate(&module).unwrap_or_else(|error| panic!("{}: {error:?}", file.display()));
+            }
         }
     }
 }
@@ -87,7 +97,7 @@ fn the_same_text_gives_the_same_bytes() {
             });
             other.join().expect("the thread ends well")
         });
-        assert_eq!(first.texture().wgsl, again.texture().wgsl);
+        assert_eq!(all_shaders(&first), all_shaders(&again));
         assert_eq!(first.manifest, again.manifest);
     }
 }

@@ -234,7 +234,7 @@ pub static KINDS: &[Kind] = &[
     },
     Kind {
         name: "bake",
-        constructor: "(field: node(at: vec2) -> texel, size: ivec2 = 512, \
+        constructor: "(field: node(uv: vec2) -> texel, size: ivec2 = 512, \
                       wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
                       format: rgba16float | rgba8unorm | rgba8snorm = rgba16float) -> image",
         doc: "The values of a node over 0..1, a texel each, with mip levels: a virtual texture made explicit.",

@@ -130,7 +130,9 @@ impl<'a> Checker<'a> {
         let bounded = from != ANY && to != ANY || longest <= i64::from(limits::MAX_STEPS);
         if fits {
             let length = b.builtin(ADD_INT, &[span, one]);
-            return (b.builtin(MAXIMUM_INT, &[length, zero]), bounded.then_some(longest as u64));
+            let never_short = to.low - from.high + i64::from(inclusive) >= 0;
+            let count = if never_short { length } else { b.builtin(MAXIMUM_INT, &[length, zero]) };
+            return (count, bounded.then_some(longest as u64));
         }
         // The difference may wrap: what is longer than an int can tell has at least `max` places.
         let cap = int(b, max.and_then(|max| i32::try_from(max).ok()).unwrap_or(i32::MAX - 1));
