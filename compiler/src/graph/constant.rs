@@ -82,6 +82,11 @@ impl Constant {
         Constant::new(self.scalar, [self.bits.get(i).copied().unwrap_or(0)])
     }
 
+    /// Whether all components are the same, bit for bit.
+    pub fn is_splat(&self) -> bool {
+        self.bits().iter().all(|bits| *bits == self.bits[0])
+    }
+
     /// A scalar in every component.
     pub fn splat(&self, width: u8) -> Constant {
         Constant::new(self.scalar, std::iter::repeat_n(self.bits[0], usize::from(width)))

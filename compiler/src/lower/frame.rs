@@ -2,6 +2,7 @@
 
 use super::body::Variable;
 use super::fold::takes_all_steps;
+use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
 use crate::intrinsic::{MULTIPLY, MULTIPLY_INT};
@@ -188,8 +189,8 @@ fn hint(operation: &Operation) -> &str {
     }
 }
 
-/// How often each value is written. A factor that is a scalar in every component is written as
-/// that scalar; a branch writes its condition once; a loop counts as many times.
+/// How often each value is written. What is a scalar in every component is written as that scalar,
+/// once; a branch writes its condition once; a loop counts as many times.
 fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
     let mut uses = vec![0; function.values.len()];
     for (_, value) in &function.outputs {
@@ -214,6 +215,10 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
                 fold.starts.iter().for_each(|v| add(*v, 1));
                 fold.captures.iter().for_each(|v| add(*v, 2));
                 add(fold.steps, if takes_all_steps(function, fold) { 2 } else { 1 });
+            }
+            Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => add(parts[0], 1),
+            Operation::Lookup(table, index) => {
+                add(*index, if table.len() <= MAX_CHOSEN { table.len() as u32 - 1 } else { 1 });
             }
             Operation::Extract(vector, _) if !function.names.contains_key(&value) => add(*vector, own),
             _ => operation.for_operands(|v| add(v, 1)),
@@ -244,9 +249,7 @@ pub enum Splat {
 /// The scalar of a vector that has one in every component.
 pub fn splat_of(function: &Function, vector: Value) -> Option<Splat> {
     match function.operation(vector) {
-        Operation::Constant(c) if c.width() > 1 && c.bits().iter().all(|bits| *bits == c.bits()[0]) => {
-            Some(Splat::Constant(c.component(0)))
-        }
+        Operation::Constant(c) if c.width() > 1 && c.is_splat() => Some(Splat::Constant(c.component(0))),
         Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => {
             Some(Splat::Value(parts[0]))
         }

@@ -11,17 +11,21 @@ mod frame;
 mod function;
 mod helper;
 mod operation;
+mod outline;
+mod table;
 mod types;
 mod wrap;
 
 use crate::graph::regions::Weights;
-use crate::graph::{FunctionId, Graph, Operation, ParamId, ViewId};
+use crate::graph::{Constant, FunctionId, Graph, Operation, ParamId, ViewId};
 use crate::intrinsic::Helper;
 use crate::manifest::Manifest;
 use crate::naming::{self, Names, Scope};
 use body::Results;
 use naga::{Handle, Span};
+use rustc_hash::FxHashMap;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use types::Types;
 
 /// A module with the names that its placeholders stand for.
@@ -72,11 +76,13 @@ struct Lowering<'a> {
     /// The same, so far; folds' steps and conditions stand in place and are none.
     functions: Vec<Option<Callee>>,
     helpers: BTreeMap<Helper, Handle<naga::Function>>,
+    tables: FxHashMap<Arc<[Constant]>, Handle<naga::Constant>>,
     results: Vec<Results>,
 }
 
 /// Lowers a graph whose passes have run, wrapped as its manifest says.
 pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
+    let graph = &*outline::outlined(graph);
     let mut l = Lowering {
         graph,
         manifest,
@@ -89,6 +95,7 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
         captures: captures(graph),
         functions: graph.functions.iter().map(|_| None).collect(),
         helpers: BTreeMap::new(),
+        tables: FxHashMap::default(),
         results: Vec::new(),
     };
     // The manifest's names are the ones hosts know.

@@ -52,7 +52,7 @@ impl Lowering<'_> {
                 body.name(&mut self.names, size, "texels");
                 body.convert(size, ScalarKind::Sint)
             }
-            Operation::Lookup(..) => unreachable!("not lowered yet"),
+            Operation::Lookup(table, index) => self.lookup(body, frame, table, *index),
             Operation::Fold(fold) => {
                 let accumulators = self.fold(body, frame, value, fold);
                 let first = accumulators[0];
@@ -88,21 +88,15 @@ impl Lowering<'_> {
         }
     }
 
-    fn constant(&mut self, body: &mut Body, constant: &Constant) -> Handle<Expression> {
+    pub(super) fn constant(&mut self, body: &mut Body, constant: &Constant) -> Handle<Expression> {
         let width = constant.width();
-        let same = constant.bits().iter().all(|bits| *bits == constant.bits()[0]);
-        let literal = |i: usize| match constant.scalar() {
-            Scalar::Float => Literal::F32(constant.float(i)),
-            Scalar::Int => Literal::I32(constant.int(i)),
-            Scalar::Bool => Literal::Bool(constant.bool(i)),
-        };
         if width == 1 {
-            body.literal(literal(0))
-        } else if same {
-            let value = body.literal(literal(0));
+            body.literal(literal(constant, 0))
+        } else if constant.is_splat() {
+            let value = body.literal(literal(constant, 0));
             body.add(Expression::Splat { size: size(width), value })
         } else {
-            let components = (0..usize::from(width)).map(|i| body.literal(literal(i))).collect();
+            let components = (0..usize::from(width)).map(|i| body.literal(literal(constant, i))).collect();
             let ty = self.types.get(&mut self.module.types, constant.ty());
             body.add(Expression::Compose { ty, components })
         }
@@ -373,6 +367,15 @@ impl Lowering<'_> {
         };
         let ty = super::Types::of(&mut self.module.types, numeric(scalar(Scalar::Float), 4));
         body.add(Expression::Compose { ty, components })
+    }
+}
+
+/// A component of a known number.
+pub fn literal(constant: &Constant, i: usize) -> Literal {
+    match constant.scalar() {
+        Scalar::Float => Literal::F32(constant.float(i)),
+        Scalar::Int => Literal::I32(constant.int(i)),
+        Scalar::Bool => Literal::Bool(constant.bool(i)),
     }
 }
 
