@@ -21,6 +21,7 @@ pub mod resource;
 pub mod settings;
 pub mod uniform;
 
+mod false_color;
 mod flat;
 mod nearest;
 mod pass;

@@ -1,5 +1,6 @@
 //! A rendered picture: floats, compared and written as PNG.
 
+use crate::false_color;
 use crate::resource::SrgbEncoder;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -27,6 +28,12 @@ pub enum Content {
     Normal,
     /// Anything else.
     Data,
+    /// Integers, shown in false colours: each its own, neighbours far apart, negative ones too.
+    /// Floats carry them, so above 2²⁴ some share one.
+    Integer,
+    /// The components of a vector, shown as red, green and blue; a fourth is not shown. Values
+    /// outside 0..1 are shown by their fractional part: that they leave the range is then seen.
+    Vector,
 }
 
 /// How far two pictures are apart.
@@ -43,8 +50,8 @@ pub struct Difference {
 impl Picture {
     /// The bytes of a PNG file. Colour is un-premultiplied and sRGB-encoded in 8 bits; data is
     /// written as it is, clamped to 0..1, in 16 bits; normals likewise as ½ + ½n. What is no number
-    /// is 0. There is an alpha
-    /// channel only where a pixel is not opaque.
+    /// is 0. There is an alpha channel only where a pixel is not opaque. Integers and vectors are
+    /// shown as [`Content`] says, opaque, integers in 8 bits and vectors in 16.
     ///
     /// # Errors
     /// The picture does not have as many pixels as its size says, or is more than a PNG may hold.
@@ -55,7 +62,22 @@ impl Picture {
                 reason: format!("{} pixels, where {wanted} belong", self.pixels.len()),
             });
         }
-        if self.content == Content::Color { self.color_png() } else { self.data_png() }
+        match self.content {
+            Content::Color => self.color_png(),
+            Content::Normal => self.data_png(|[x, y, z, w]| [0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 + 0.5 * z, w]),
+            Content::Data => self.data_png(|pixel| pixel),
+            Content::Integer => self.integer_png(),
+            Content::Vector => self.data_png(|[x, y, z, _]| {
+                let [red, green, blue] = [x, y, z].map(false_color::of_component);
+                [red, green, blue, 1.0]
+            }),
+        }
+    }
+
+    fn integer_png(&self) -> Result<Vec<u8>, PictureError> {
+        let codes: Vec<[u8; 3]> =
+            self.pixels.par_iter().map(|pixel| false_color::of_integers(*pixel)).collect();
+        self.encode(codes.as_flattened(), ExtendedColorType::Rgb8)
     }
 
     fn color_png(&self) -> Result<Vec<u8>, PictureError> {
@@ -74,15 +96,13 @@ impl Picture {
         self.encode(&bytes, color)
     }
 
-    fn data_png(&self) -> Result<Vec<u8>, PictureError> {
+    fn data_png(&self, shown: impl Fn([f32; 4]) -> [f32; 4] + Sync) -> Result<Vec<u8>, PictureError> {
         let code = |x: f32| (x.clamp(0.0, 1.0) * 65535.0).round() as u16;
-        let (scale, offset) = if self.content == Content::Normal { (0.5, 0.5) } else { (1.0, 0.0) };
-        let opaque = self.pixels.par_iter().all(|pixel| code(pixel[3]) == u16::MAX);
+        let opaque = self.pixels.par_iter().all(|pixel| code(shown(*pixel)[3]) == u16::MAX);
         let channels = if opaque { 3 } else { 4 };
         let mut bytes = vec![0; self.pixels.len() * channels * 2];
-        bytes.par_chunks_exact_mut(channels * 2).zip(&self.pixels).for_each(|(slot, [x, y, z, w])| {
-            let [x, y, z] = [x, y, z].map(|c| c * scale + offset);
-            for (slot, x) in slot.chunks_exact_mut(2).zip([x, y, z, *w]) {
+        bytes.par_chunks_exact_mut(channels * 2).zip(&self.pixels).for_each(|(slot, pixel)| {
+            for (slot, x) in slot.chunks_exact_mut(2).zip(shown(*pixel)) {
                 slot.copy_from_slice(&code(x).to_ne_bytes());
             }
         });
@@ -175,6 +195,29 @@ mod tests {
     fn data_is_linear_and_clamped() {
         let file = decoded(&picture(&[[0.5, -1.0, f32::INFINITY, 1.0], [f32::NAN, 1.0, 0.0, 1.0]], false));
         assert_eq!(file.into_rgb16().into_raw(), [32768, 0, 65535, 0, 65535, 0]);
+    }
+
+    fn shown(pixels: &[[f32; 4]], content: Content) -> image::DynamicImage {
+        decoded(&Picture { content, ..picture(pixels, false) })
+    }
+
+    #[test]
+    fn vectors_fold_back_and_hide_no_pixel() {
+        let file = shown(&[[0.5, -0.25, 1.0, 0.0], [1.5, f32::NAN, 0.0, 9.0]], Content::Vector);
+        assert_eq!(file.color(), image::ColorType::Rgb16);
+        assert_eq!(file.into_rgb16().into_raw(), [32768, 49151, 65535, 32768, 0, 0]);
+    }
+
+    #[test]
+    fn integers_have_colours() {
+        let scalar = |x: f32| [x, x, x, 1.0];
+        let pixels = [scalar(3.0), scalar(-3.0), scalar(3.0), [3.0, 4.0, 0.0, 1.0]];
+        let file = shown(&pixels, Content::Integer);
+        assert_eq!(file.color(), image::ColorType::Rgb8);
+        let raw = file.into_rgb8().into_raw();
+        let colors: Vec<&[u8]> = raw.chunks(3).collect();
+        assert_eq!(colors[0], colors[2]);
+        assert!(colors[0] != colors[1] && colors[0] != colors[3] && colors[1] != colors[3], "{colors:?}");
     }
 
     #[test]

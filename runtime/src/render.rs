@@ -23,6 +23,7 @@ use crate::resource::Tables;
 use crate::settings::Settings;
 use crate::uniform::Draw;
 use texgraph_compiler::Program;
+use texgraph_compiler::manifest::{Output, Scalar};
 
 /// The longest side of a picture, in pixels.
 pub const MAX_SIDE: u32 = 32_768;
@@ -62,12 +63,7 @@ impl Request {
         let output = outputs
             .get(self.output)
             .ok_or(RenderError::NoOutput { output: self.output, outputs: outputs.len() })?;
-        let content = match output.name.as_str() {
-            _ if output.is_color => Content::Color,
-            "normal" => Content::Normal,
-            _ => Content::Data,
-        };
-        Ok(Picture { content, ..self.blank()? })
+        Ok(Picture { content: content(output), ..self.blank()? })
     }
 
     /// A blank picture of data.
@@ -86,6 +82,18 @@ impl Request {
         pixels.try_reserve_exact(count).map_err(|_| RenderError::Memory { size: self.size })?;
         pixels.resize(count, [0.0; 4]);
         Ok(Picture { size: self.size, pixels, content: Content::Data })
+    }
+}
+
+/// What an output's floats mean: by its name where that is one that hosts know, else by its type.
+fn content(output: &Output) -> Content {
+    match (output.name.as_str(), output.ty.scalar, output.ty.width) {
+        (_, Scalar::Int, _) => Content::Integer,
+        (_, Scalar::Float, _) if output.is_color => Content::Color,
+        ("normal", Scalar::Float, 3) => Content::Normal,
+        ("emission", ..) => Content::Data,
+        (_, Scalar::Float, 2..) => Content::Vector,
+        _ => Content::Data,
     }
 }
 
@@ -228,4 +236,30 @@ pub fn render(
     progress: &(dyn Fn(f32) + Sync),
 ) -> Result<Picture, RenderError> {
     Renderer::new(backend)?.render(program, tables, request, progress)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::content;
+    use crate::picture::Content;
+    use texgraph_compiler::manifest::{Output, Scalar, Type};
+
+    #[test]
+    fn what_an_output_means_follows_from_name_and_type() {
+        let of = |name: &str, scalar, width| {
+            let ty = Type { scalar, width };
+            content(&Output { name: name.into(), ty, location: 0, is_color: name == "color" })
+        };
+        assert_eq!(of("color", Scalar::Float, 4), Content::Color);
+        assert_eq!(of("normal", Scalar::Float, 3), Content::Normal);
+        assert_eq!(of("normal", Scalar::Float, 2), Content::Vector);
+        assert_eq!(of("emission", Scalar::Float, 3), Content::Data);
+        assert_eq!(of("height", Scalar::Float, 1), Content::Data);
+        assert_eq!(of("at", Scalar::Float, 2), Content::Vector);
+        assert_eq!(of("rnd", Scalar::Float, 4), Content::Vector);
+        assert_eq!(of("pick", Scalar::Int, 1), Content::Integer);
+        assert_eq!(of("cell", Scalar::Int, 2), Content::Integer);
+        assert_eq!(of("color", Scalar::Int, 1), Content::Integer);
+        assert_eq!(of("inside", Scalar::Bool, 1), Content::Data);
+    }
 }

@@ -171,7 +171,7 @@ fn calls_choices_inputs_and_outputs() {
     assert_eq!(color.pixels[2], [0.625, 0.0, 7.0, 1.0]);
     request.output = 1;
     let data = render(&program, &Tables::default(), &request);
-    assert_eq!(data.content, Content::Data);
+    assert_eq!(data.content, Content::Vector);
     assert_eq!(data.pixels[5], [0.375, 0.375, 7.0, 1.0]);
 }
 

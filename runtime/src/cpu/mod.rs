@@ -7,6 +7,7 @@
 //! place of the machine alone.
 
 mod demand;
+mod evaluate;
 mod machine;
 mod plan;
 mod sample;

@@ -10,7 +10,8 @@
 //! begins with its inputs.
 
 use super::demand::demand;
-use super::machine::{Machine, evaluate, fold_steps};
+use super::evaluate::evaluate;
+use super::machine::{Machine, fold_steps};
 use super::texture::Texture;
 use crate::flat::Slope;
 use crate::pass::Pass;
