@@ -165,8 +165,9 @@ pub enum ManifestFormat {
 #[derive(clap::Args)]
 #[command(after_help = RENDER)]
 pub struct Render {
-    /// The .tex file, with the name of the texture if it is not the first: walls.tex:bricks
-    #[arg(value_name = "FILE[:TEXTURE]")]
+    /// The .tex file, with the name of the texture if it is not the first: walls.tex:bricks. A node
+    /// is rendered by its name too, and any wire inside either as walls.tex:bricks.pick
+    #[arg(value_name = "FILE[:TEXTURE[.WIRE]]")]
     pub file: OsString,
     /// The PNG file that is written
     #[arg(short, value_name = "OUT.png")]

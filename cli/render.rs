@@ -56,13 +56,21 @@ fn check_target(path: &Path) -> Result<(), Problem> {
     output::try_out(path)
 }
 
-/// Cuts `FILE:TEXTURE`. What follows the last `:` is a texture only if it could be the name of one:
+/// Cuts `FILE:TEXTURE`, or `FILE:TEXTURE.WIRE`. What follows the last `:` is a texture only if it could be the name of one:
 /// `C:\walls.tex` is a file.
 fn split(argument: &OsStr) -> (PathBuf, Option<String>) {
     let cut = argument.to_str().and_then(|text| text.rsplit_once(':'));
     match cut {
-        Some((file, name)) if !file.is_empty() && is_name(name) => (file.into(), Some(name.to_owned())),
+        Some((file, name)) if !file.is_empty() && is_wire(name) => (file.into(), Some(name.to_owned())),
         _ => (argument.into(), None),
+    }
+}
+
+/// `texture`, `node` or `texture.wire`; `walls.tex` is a file.
+fn is_wire(text: &str) -> bool {
+    match text.split_once('.') {
+        Some((name, wire)) => is_name(name) && is_name(wire) && wire != "tex",
+        None => is_name(text),
     }
 }
 
@@ -143,6 +151,8 @@ mod tests {
             (":bricks", ":bricks", None),
             ("a.tex:2b", "a.tex:2b", None),
             ("a:b:c", "a:b", Some("c")),
+            ("a.tex:bricks.pick", "a.tex", Some("bricks.pick")),
+            ("C:walls.tex", "C:walls.tex", None),
         ];
         for (argument, file, texture) in cases {
             assert_eq!(split(OsStr::new(argument)), (PathBuf::from(file), texture.map(str::to_owned)));
