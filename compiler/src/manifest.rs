@@ -217,7 +217,8 @@ pub enum Recipe {
         /// How the numbers are read.
         encoding: Encoding,
     },
-    /// Four independent permutations of 0..size. Field `table`: texel i holds σ₀(i)…σ₃(i).
+    /// Four independent permutations of 0..size: entry i holds σ₀(i)…σ₃(i). A row of the program's
+    /// [`Recipe::Tables`].
     Permutation {
         /// T, 2 to 4096.
         size: u32,
@@ -231,6 +232,12 @@ pub enum Recipe {
         /// M: a picture's grey range is cut into M equal steps, numbered from 0 (black); numbers
         /// given as a list must be below it.
         levels: u32,
+    },
+    /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
+    /// the r-th of these resources; the width is that of the longest.
+    Tables {
+        /// Indices of resources: permutations.
+        rows: Vec<u32>,
     },
     /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
     /// compiling.

@@ -66,8 +66,22 @@ pub struct Field {
 pub enum FieldKind {
     /// A texture.
     View(View),
+    /// A row of the texture that all small tables share, as [`SHARED`]; the constant `row` tells
+    /// which.
+    Row,
     /// A number known from the arguments.
     Constant,
+}
+
+impl FieldKind {
+    /// The texture, if it is one.
+    pub fn view(self) -> Option<View> {
+        match self {
+            FieldKind::View(view) => Some(view),
+            FieldKind::Row => Some(SHARED),
+            FieldKind::Constant => None,
+        }
+    }
 }
 
 /// What a constructor call makes.
@@ -180,6 +194,10 @@ const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled 
 const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled };
 const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer };
 
+/// The texture that small tables of ints share, a row each: a graph stays inside the number of
+/// textures that a shader may read.
+pub const SHARED: View = INTEGERS;
+
 /// The longest side of a bake: what every GPU can hold.
 const MAX_BAKE: i32 = 8192;
 
@@ -214,8 +232,9 @@ pub static KINDS: &[Kind] = &[
         doc: "A table of four independent permutations of 0..size.",
         gives: None,
         fields: &[
-            Field { name: "table", kind: FieldKind::View(INTEGERS) },
+            Field { name: "table", kind: FieldKind::Row },
             Field { name: "size", kind: FieldKind::Constant },
+            Field { name: "row", kind: FieldKind::Constant },
         ],
         view: None,
         make: make_permutation,

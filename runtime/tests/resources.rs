@@ -315,3 +315,22 @@ fn the_number_of_threads_changes_nothing() {
     };
     assert_eq!(load(1), load(7));
 }
+
+#[test]
+fn small_tables_share_a_texture_a_row_each() {
+    let folder = folder();
+    let recipes = vec![
+        Recipe::Permutation { size: 16, seed: 3 },
+        Recipe::Permutation { size: 5, seed: 4 },
+        Recipe::Tables { rows: vec![1, 0] },
+    ];
+    let (manifest, tables) = load_recipes(folder.path(), recipes).expect("they load");
+    let bytes = |index: usize| integers(tables.get(index, "table").expect("made"));
+    let shared = manifest.resources[2].textures[0].table.as_ref().expect("laid out");
+    assert_eq!((shared.width, shared.height), (16, 2));
+    let (first, second, all) = (bytes(0), bytes(1), bytes(2));
+    assert_eq!(all[..20], second[..]);
+    assert!(all[20..64].iter().all(|rest| *rest == 0));
+    assert_eq!(all[64..], first[..]);
+    assert_eq!(codes(folder.path(), vec![Recipe::Tables { rows: vec![0] }]), ["E0551"]);
+}

@@ -39,7 +39,7 @@ fn tables_agree_with_the_manifest() {
 fn every_texture_or_the_named_one() {
     let shop = Workshop::new(&[("two.tex", TWO)]);
     assert!(shop.run(&["build", "two.tex", "-o", "all"]).is_silent());
-    let names = ["first.order.table.bin", "first.ron", "first.wgsl", "second.ron", "second.wgsl"];
+    let names = ["first.tables.table.bin", "first.ron", "first.wgsl", "second.ron", "second.wgsl"];
     for name in names {
         assert!(!shop.read(&format!("all/{name}")).is_empty(), "{name}");
     }

@@ -5,7 +5,7 @@ use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, names, nodes, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
-use crate::resource::{FieldKind, KINDS};
+use crate::resource::KINDS;
 use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name};
 
 /// An argument, evaluated.
@@ -329,7 +329,7 @@ impl<'a> Checker<'a> {
         }
         let sampled = KINDS[kind].fields.iter().any(|field| {
             Some(field.name) == KINDS[kind].view
-                && matches!(field.kind, FieldKind::View(view) if view.texel == Texel::Sampled)
+                && field.kind.view().is_some_and(|view| view.texel == Texel::Sampled)
         });
         if sampled { vec!["sample".to_owned()] } else { readers }
     }

@@ -5,9 +5,13 @@ use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};
 use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, ViewId};
-use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, made_by};
+use crate::manifest::Recipe;
+use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, SHARED, made_by};
 use std::rc::Rc;
 use texgraph_grammar::syntax::Input;
+
+/// Stands for the resource of the shared tables while it is not made.
+const SHARED_RESOURCE: u32 = u32::MAX;
 
 impl<'a> Checker<'a> {
     /// Makes the resource of a constructor call, or finds the one made before.
@@ -57,13 +61,23 @@ impl<'a> Checker<'a> {
         let resource = known.unwrap_or_else(|| {
             let resource = self.resources.len();
             let mut views = Vec::new();
+            let mut constants = made.constants.clone();
             for field in KINDS[kind].fields {
-                if let FieldKind::View(view) = field.kind {
-                    views.push(ViewId(self.views.len() as u32));
-                    self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
+                match field.kind {
+                    FieldKind::View(view) => {
+                        views.push(ViewId(self.views.len() as u32));
+                        self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
+                    }
+                    FieldKind::Row => {
+                        self.rows.push(resource as u32);
+                        let row = Constant::ints(&[self.rows.len() as i32 - 1]);
+                        constants.push(("row", row));
+                        views.push(self.shared_view());
+                    }
+                    FieldKind::Constant => {}
                 }
             }
-            self.resource_wires.push(ResourceFields { kind, views, constants: made.constants.clone() });
+            self.resource_wires.push(ResourceFields { kind, views, constants });
             self.resources.push(Resource {
                 name: self.fresh_name(&f.current),
                 label: String::new(),
@@ -75,6 +89,34 @@ impl<'a> Checker<'a> {
             resource
         });
         self.resource_value(f, resource)
+    }
+
+    /// The texture that small tables share. The resource behind it is made at the end, when all its
+    /// rows are known.
+    fn shared_view(&mut self) -> ViewId {
+        let known = self.views.iter().position(|view| view.resource == SHARED_RESOURCE);
+        let view = known.unwrap_or_else(|| {
+            let field = "table";
+            self.views.push(ResourceView { resource: SHARED_RESOURCE, field, view: SHARED });
+            self.views.len() - 1
+        });
+        ViewId(view as u32)
+    }
+
+    /// Makes the resource of the shared tables, if there are any.
+    pub(super) fn share_tables(&mut self) {
+        if self.rows.is_empty() {
+            return;
+        }
+        let resource = self.resources.len() as u32;
+        let first = self.rows.first().and_then(|row| self.resources.get(*row as usize));
+        let place = first.map(|first| first.place).unwrap_or_default();
+        let name = self.fresh_name("tables");
+        let label = "Small tables, a row each.".to_owned();
+        let recipe = Recipe::Tables { rows: std::mem::take(&mut self.rows) };
+        self.resources.push(Resource { name, label, place, recipe, sampler: None, bake: None });
+        let shared = self.views.iter_mut().filter(|view| view.resource == SHARED_RESOURCE);
+        shared.for_each(|view| view.resource = resource);
     }
 
     /// A name for a resource that stands inside an expression: that of its wire, made unique.

@@ -206,7 +206,7 @@ impl<'a> Checker<'a> {
                     Global::Unknown
                 }
             },
-            Wire::Resource(resource) => self.resource_of(f, resource).map_or(Global::Unknown, |id| {
+            Wire::Resource(resource) => resource.id.map_or(Global::Unknown, |id| {
                 self.resources[id].name = format!("{}{}", self.aliases[f.module], name.text);
                 doc.clone_into(&mut self.resources[id].label);
                 Global::Resource(id)
@@ -260,17 +260,6 @@ impl<'a> Checker<'a> {
         }
         let wire = self.global_wire(f, global);
         self.bind(f, name, wire);
-    }
-
-    /// Which resource a wire of this frame shows.
-    fn resource_of(&self, f: &Frame<'a>, wire: &super::ResourceWire) -> Option<usize> {
-        let (_, value) = wire.views.first()?;
-        match f.builder.operation(*value) {
-            crate::graph::Operation::View(id) => {
-                self.views.get(id.0 as usize).map(|view| view.resource as usize)
-            }
-            _ => None,
-        }
     }
 
     pub(super) fn set_param(&mut self, f: &mut Frame<'a>, item: &'a Item, wire: Wire, place: Place) {

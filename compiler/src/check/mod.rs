@@ -35,7 +35,7 @@ use crate::graph::{
 };
 use crate::library::{Callable, Library};
 use crate::module::Module;
-use crate::resource::{FieldKind, KINDS, Resource};
+use crate::resource::{KINDS, Resource};
 use globals::Global;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
@@ -68,6 +68,8 @@ pub struct Checker<'a> {
     resources: Vec<Resource>,
     resource_wires: Vec<ResourceFields>,
     views: Vec<ResourceView>,
+    /// The resources that are rows of the shared table.
+    rows: Vec<u32>,
     diagnostics: Vec<Diagnostic>,
     /// Nodes made or being made.
     started: usize,
@@ -162,6 +164,7 @@ impl<'a> Checker<'a> {
             resources: Vec::new(),
             resource_wires: Vec::new(),
             views: Vec::new(),
+            rows: Vec::new(),
             diagnostics: Vec::new(),
             started: 0,
             values: 0,
@@ -190,7 +193,8 @@ impl<'a> Checker<'a> {
 
     /// The graph whose entry is the node of `key`, made before, after those of the bakes that it
     /// reads, each after those that it reads itself. With each bake the resource that it fills.
-    pub fn into_graphs(self, key: &Key) -> Option<Vec<PassGraph>> {
+    pub fn into_graphs(mut self, key: &Key) -> Option<Vec<PassGraph>> {
+        self.share_tables();
         let Some(Outcome::Made(entry)) = self.made.get(key).copied() else { return None };
         let mut graph = Graph {
             functions: self.functions,
@@ -476,12 +480,12 @@ impl<'a> Checker<'a> {
             ArgumentKey::Resource(kind, constants) => {
                 let mut views = Vec::new();
                 for field in KINDS[*kind].fields {
-                    if let FieldKind::View(view) = field.kind {
+                    if let Some(view) = field.kind.view() {
                         let full = format!("{name}_{}", field.name);
                         views.push((field.name, f.builder.input(full, Type::View(view))));
                     }
                 }
-                Wire::Resource(Rc::new(ResourceWire { kind: *kind, views, constants: constants.clone() }))
+                Wire::Resource(Rc::new(ResourceWire { kind: *kind, id: None, views, constants: constants.clone() }))
             }
             ArgumentKey::Node(function) => self.node_input(f, input, *function),
             ArgumentKey::Word(word) => Wire::Word(word.clone(), Place::default()),
@@ -519,7 +523,8 @@ impl<'a> Checker<'a> {
             let ResourceView { field, view, .. } = &self.views[id.0 as usize];
             views.push((*field, f.builder.push(crate::graph::Operation::View(*id), Type::View(*view))));
         }
-        Wire::Resource(Rc::new(ResourceWire { kind: *kind, views, constants: constants.clone() }))
+        let id = Some(resource);
+        Wire::Resource(Rc::new(ResourceWire { kind: *kind, id, views, constants: constants.clone() }))
     }
 }
 

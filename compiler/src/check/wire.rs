@@ -42,6 +42,8 @@ pub enum Wire {
 pub struct ResourceWire {
     /// Row of the table of kinds.
     pub kind: usize,
+    /// Which one it is, where that is known.
+    pub id: Option<usize>,
     /// Its view fields.
     pub views: Vec<(&'static str, Value)>,
     /// Its constant fields.

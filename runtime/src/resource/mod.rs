@@ -12,6 +12,7 @@ mod patterns;
 mod permutation;
 pub(crate) mod pyramid;
 pub(crate) mod table;
+mod tables;
 
 pub use encoding::{SrgbEncoder, srgb_to_linear};
 
@@ -21,7 +22,7 @@ use std::sync::Arc;
 use table::Made;
 use texgraph_compiler::Program;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
-use texgraph_compiler::manifest::{Manifest, Recipe};
+use texgraph_compiler::manifest::{Manifest, Recipe, Resource};
 
 /// The bytes of every texture of a program. Cloning shares them.
 #[derive(Clone, Debug, Default)]
@@ -73,7 +74,7 @@ pub fn load(program: &mut Program, project: &Project) -> Result<Tables, Vec<Diag
                 return Ok(Vec::new());
             }
             let place = graph.resources.get(index).map(|resource| resource.place).unwrap_or_default();
-            make(project, place, &resource.recipe)
+            make(project, place, &resource.recipe, &program.manifest.resources)
         })
         .collect();
     let mut tables = Tables::default();
@@ -88,12 +89,18 @@ pub fn load(program: &mut Program, project: &Project) -> Result<Tables, Vec<Diag
 }
 
 /// The kinds: which file makes what a recipe asks for.
-fn make(project: &Project, place: Place, recipe: &Recipe) -> Result<Vec<Made>, Vec<Diagnostic>> {
+fn make(
+    project: &Project,
+    place: Place,
+    recipe: &Recipe,
+    all: &[Resource],
+) -> Result<Vec<Made>, Vec<Diagnostic>> {
     match recipe {
         Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
         Recipe::Patterns { paths, grid, encoding } => patterns::make(project, place, paths, *grid, *encoding),
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+        Recipe::Tables { rows } => tables::make(place, rows, all),
         // Made by rendering its pass.
         Recipe::Bake { .. } => Ok(Vec::new()),
     }

@@ -20,13 +20,21 @@ const SALT: u32 = 0x7065_726d;
 /// # Errors
 /// The size is not 2 to 4096.
 pub fn make(place: Place, size: u32, seed: i32) -> Result<Vec<Made>, Vec<Diagnostic>> {
+    let entries = entries(place, size, seed)?;
+    Ok(vec![Made::integers("table", Format::Rgba32Sint, [size, 1], entries.into_iter().flatten())])
+}
+
+/// The entries of the table: (σ₀(i), σ₁(i), σ₂(i), σ₃(i)) for each i.
+///
+/// # Errors
+/// The size is not 2 to 4096.
+pub fn entries(place: Place, size: u32, seed: i32) -> Result<Vec<[i32; 4]>, Vec<Diagnostic>> {
     if !(2..=MAX_SIZE).contains(&size) {
         let message = format!("a permutation of {size} numbers can't be made");
         return Err(vec![resources::no_table(place, message, format!("its size is 2 to {MAX_SIZE}"))]);
     }
     let channels: [Vec<i32>; 4] = [0, 1, 2, 3].map(|channel| shuffle(size, channel, seed));
-    let texels = (0..size as usize).flat_map(|i| channels.each_ref().map(|channel| channel[i]));
-    Ok(vec![Made::integers("table", Format::Rgba32Sint, [size, 1], texels)])
+    Ok((0..size as usize).map(|i| channels.each_ref().map(|channel| channel[i])).collect())
 }
 
 fn shuffle(size: u32, channel: u32, seed: i32) -> Vec<i32> {

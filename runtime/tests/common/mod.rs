@@ -78,6 +78,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Patterns { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
         Recipe::Permutation { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
+        Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
     };
     let sampler =
