@@ -1,16 +1,26 @@
 //! Passes: each a function from graph to graph (or from operation to simpler operation), one file
-//! each. They follow arena order and never recurse.
+//! or folder each. They follow arena order, take time in proportion to the graph and never recurse.
 
 pub mod differentiate;
 pub mod expand;
 pub mod fold_constants;
+pub mod hoist;
 pub mod inline;
 mod liveness;
 pub mod remove_dead;
 
 use crate::graph::Graph;
 
-/// Everything between checking and lowering.
+/// Everything between checking and lowering, each pass once. `fold_constants` is no step: it is
+/// applied wherever a value is made.
 pub fn run(graph: Graph) -> Graph {
-    remove_dead::run(expand::run(differentiate::run(inline::run(graph))))
+    // First, so that all others see whole expressions, and no loop where there need not be one.
+    let graph = inline::run(graph);
+    // While intrinsics are whole: their rows say how they change, the guards of a division do not.
+    let graph = differentiate::run(graph);
+    // Before hoisting, so that a guard may go where its operands are the same for a whole draw.
+    let graph = expand::run(graph);
+    let graph = hoist::run(graph);
+    // Last: all of them leave things behind that nobody reads.
+    remove_dead::run(graph)
 }
