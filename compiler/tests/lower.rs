@@ -78,13 +78,8 @@ fn graph(functions: Vec<Function>) -> Graph {
         bake: None,
     };
     let one = Constant::floats(&[1.0]);
-    let speed = Param {
-        name: "speed".into(),
-        label: String::new(),
-        ty: Type::FLOAT,
-        default: one,
-        range: None,
-    };
+    let speed =
+        Param { name: "speed".into(), label: String::new(), ty: Type::FLOAT, default: one, range: None };
     let count = Param { name: "count".into(), ty: Type::INT, default: Constant::ints(&[3]), ..speed.clone() };
     Graph {
         functions,
