@@ -141,7 +141,8 @@ fn what_is_wrong_in_them_is_found() {
     let library = Library::with(&[("stand_ins.tex", NODES)]).expect("the stand-ins are right");
     let mut examples = examples();
     let file = examples.0.get_mut("leaves.tex").expect("the file is there");
-    *file = file.replace("density: |p| density.sample(p / cells).r", "density: |p| density.sample(p / cells)");
+    *file =
+        file.replace("density: |p| density.sample(p / cells).r", "density: |p| density.sample(p / cells)");
     let errors = check(&library, "leaves.tex", &examples).expect_err("a colour is no density");
     assert_eq!(errors.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>(), ["E0201"]);
 }

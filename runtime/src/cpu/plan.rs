@@ -183,10 +183,13 @@ impl<'a> Planner<'a> {
     }
 
     fn entry_input(&mut self, n: u32, source: fn(Slope) -> Source) -> State {
-        let Some(slot) = self.function.inputs.get(n as usize) else { return State::Unknown };
-        let input = self.pass.inputs.iter().find(|input| input.name == slot.name);
-        let draw = input.and_then(|input| self.request.draw().value(&input.name, input.ty));
-        let slope = Slope::of(&slot.name, self.request);
+        let (Some(slot), Some(input)) =
+            (self.function.inputs.get(n as usize), self.pass.inputs.get(n as usize))
+        else {
+            return State::Unknown;
+        };
+        let draw = self.request.draw().value(&input.name, input.ty);
+        let slope = Slope::of(&input.name, self.request);
         match (draw, source(slope)) {
             (Some(value), Source::Value(_)) => State::Known(constant(&value)),
             (_, source) => {
