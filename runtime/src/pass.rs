@@ -14,7 +14,7 @@ pub struct Pass<'a> {
     pub described: &'a manifest::Pass,
     /// The program's manifest.
     pub manifest: &'a Manifest,
-    /// What it takes: a bake takes `uv` alone.
+    /// What its entry takes, in order: a bake `uv` alone, whatever its node calls it.
     pub inputs: Cow<'a, [Input]>,
 }
 

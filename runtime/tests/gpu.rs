@@ -12,6 +12,7 @@ use common::programs::{arithmetic, fetched, sampled, tiled};
 use common::{folder, project, write_deep, write_picture};
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::fs;
+use std::path::Path;
 use std::sync::{Arc, Mutex};
 use texgraph_compiler::manifest::{Encoding, Filter, IndicesSource, Recipe, Value, Wrap};
 use texgraph_compiler::{Library, Options, Program, compile};
@@ -35,6 +36,7 @@ const TESTS: &[(&str, Test)] = &[
     ("integers_are_equal", integers_are_equal),
     ("inputs_calls_and_outputs_agree", inputs_calls_and_outputs_agree),
     ("folds_agree", folds_agree),
+    ("compiled_bakes_agree", bakes::compiled_bakes_agree),
     ("bakes_agree", bakes::bakes_agree),
     ("large_bakes_agree", bakes::large_bakes_agree),
     ("bakes_of_bakes_agree", bakes::bakes_of_bakes_agree),
@@ -202,17 +204,23 @@ texture ground(uv: vec2, time: float) -> (color: color, height: float) {
 }
 "#;
 
+/// A program compiled from a text, in a folder with its pictures.
+fn compiled(folder: &Path, text: &str) -> Result<(Program, Tables), Failed> {
+    fs::write(folder.join("main.tex"), text)?;
+    let project = project(folder);
+    let library = Library::standard()?;
+    let compiled = compile(&library, project.main(), &project, &Options::default());
+    let mut program = compiled.map_err(|failure| format!("{:#?}", failure.diagnostics))?.program;
+    let tables = load(&mut program, &project).map_err(|errors| format!("{errors:#?}"))?;
+    Ok((program, tables))
+}
+
 fn a_compiled_program_agrees(gpu: &Gpu) -> Result<(), Failed> {
     let folder = folder();
     write_picture(&folder.path().join("tiles.png"), [128, 64], &noise(128 * 64 * 3));
     write_picture(&folder.path().join("photo.png"), [50, 31], &noise(50 * 31 * 4));
     write_picture(&folder.path().join("areas.png"), [8, 8], &noise(64));
-    fs::write(folder.path().join("main.tex"), SOURCE)?;
-    let project = project(folder.path());
-    let library = Library::standard()?;
-    let compiled = compile(&library, project.main(), &project, &Options::default());
-    let mut program = compiled.map_err(|failure| format!("{:#?}", failure.diagnostics))?.program;
-    let tables = load(&mut program, &project).map_err(|errors| format!("{errors:#?}"))?;
+    let (program, tables) = compiled(folder.path(), SOURCE)?;
     for output in 0..program.manifest.outputs.len() {
         let mut request = Request { output, time: 1.5, ..Request::new([200, 150]) };
         request.region = [-0.51, 0.02, 0.93, 1.13];

@@ -10,6 +10,7 @@ mod demand;
 mod evaluate;
 mod machine;
 mod plan;
+mod planner;
 mod sample;
 mod texture;
 

@@ -216,10 +216,10 @@ pub fn constant(components: &[f32]) -> Step {
     Step { entry: b.finish(), wgsl, fills: Some(0), reads: vec![], params: vec![] }
 }
 
-/// `(u², uv, v, 1)`, which reads no param.
+/// `(u², uv, v, 1)`, which reads no param, and calls its input by another name.
 pub fn smooth() -> Step {
     let mut b = Builder::new("smooth");
-    let uv = b.input("uv", VEC2);
+    let uv = b.input("place", VEC2);
     let [u, v] = [0, 1].map(|i| b.extract(uv, i));
     let (square, product) = (floats(&mut b, "*", u, u), floats(&mut b, "*", u, v));
     let value = b.compose(&[square, product, v]);

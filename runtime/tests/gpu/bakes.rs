@@ -14,6 +14,43 @@ fn with(program: &Program, mut request: Request, name: &str, value: &[f32]) -> R
     request
 }
 
+/// From a file's text: a bake with a param, one without, one of both, and a fold over the last.
+const SOURCE: &str = r#"
+param stripes: float = 5.0 in 1.0..=20.0
+node waves(p: vec2) -> (v: vec4) {
+    v = vec4(0.5 + 0.5 * sin(6.2832 * stripes * p.x), p.y, p.x * p.y, 1.0)
+}
+node rings(p: vec2) -> (v: float) { v = fract(4.0 * length(p - 0.5)) }
+let base = bake(waves, size: ivec2(64))
+let ring = bake(rings, size: ivec2(128), wrap: clamp)
+node mixed(at: vec2) -> (v: vec4) { v = base.sample(at * 2.0) * ring.sample(at).x }
+let both = bake(mixed, size: ivec2(256, 128), format: rgba8unorm)
+texture shown(uv: vec2, time: float) -> (color: color) {
+    let sum = fold (sum = vec4(0.0)) for i in 0..ifloor(uv.x * 6.0) max 8 {
+        sum = sum + 0.2 * both.sample(uv + float(i) * 0.1 + time)
+    }
+    color = sum
+}
+"#;
+
+pub fn compiled_bakes_agree(gpu: &Gpu) -> Result<(), Failed> {
+    let folder = super::common::folder();
+    let (program, tables) = super::compiled(folder.path(), SOURCE)?;
+    let mut ahead = tables.clone();
+    texgraph_runtime::bake::render_fixed(&program, &mut ahead).map_err(|error| error.to_string())?;
+    if ahead.iter().count() != 1 {
+        return Err("one bake of three depends on no param".into());
+    }
+    for side in [200, 90] {
+        let request =
+            Request { time: 0.25, region: [0.113, -0.21, 1.207, 0.884], ..Request::new([side, side]) };
+        compare(gpu, &program, &tables, &request, FILTERED)?;
+        let request = with(&program, request, "stripes", &[2.0]);
+        compare(gpu, &program, &ahead, &request, FILTERED)?;
+    }
+    Ok(())
+}
+
 /// Every format and wrap, from near to far: all levels.
 pub fn bakes_agree(gpu: &Gpu) -> Result<(), Failed> {
     let formats = [Format::Rgba16Float, Format::Rgba8Unorm, Format::Rgba8UnormSrgb, Format::Rgba8Snorm];
