@@ -8,6 +8,7 @@
 //! [`compile`] reads as that picture. No file is opened here: a host hands text in through a
 //! [`module::Loader`], and gets back plain data.
 
+mod advice;
 mod check;
 pub mod color;
 mod contract;
@@ -113,7 +114,8 @@ pub fn compile(
 ) -> Result<Compiled, Failure> {
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
-    let (graph, label) = checked(library, &modules, options).map_err(fail)?;
+    let checked = checked(library, &modules, options);
+    let (graph, label) = checked.map_err(|diagnostics| fail(advice::advise(&modules, diagnostics)))?;
     let graph = pass::run(graph);
     let manifest = contract::manifest(&graph, &label, options);
     let wgsl = emit::wgsl(&lower::lower(&graph, &manifest))
@@ -132,7 +134,7 @@ pub fn check(library: &Library, main: &str, loader: &dyn Loader) -> Result<Sourc
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     checker.everything();
-    let diagnostics = checker.into_diagnostics();
+    let diagnostics = advice::advise(&modules, checker.into_diagnostics());
     if diagnostics.is_empty() {
         Ok(modules.sources)
     } else {

@@ -63,10 +63,8 @@ const SYMBOLS: [&str; 17] =
 /// Scans a text of at most [`MAX_BYTES`] bytes.
 pub(crate) fn scan(source: &str) -> Result<Scan<'_>, SyntaxError> {
     if source.len() > MAX_BYTES {
-        return Err(SyntaxError {
-            kind: SyntaxErrorKind::FileTooLarge { bytes: source.len() },
-            span: beyond_limit(source),
-        });
+        let kind = SyntaxErrorKind::FileTooLarge { bytes: source.len() };
+        return Err(SyntaxError::new(kind, beyond_limit(source)));
     }
     let scan = Scan { source, tokens: Vec::new(), comments: Vec::new(), errors: Vec::new() };
     let mut scanner = Scanner { scan, bytes: source.as_bytes(), at: 0 };
@@ -129,7 +127,7 @@ impl Scanner<'_> {
     }
 
     fn fail(&mut self, kind: SyntaxErrorKind, start: usize, end: usize) {
-        self.scan.errors.push(SyntaxError { kind, span: Span::new(start, end) });
+        self.scan.errors.push(SyntaxError::new(kind, Span::new(start, end)));
     }
 
     fn skip_word(&mut self) {

@@ -53,14 +53,15 @@ fn foreign(name: &str) -> Option<String> {
     known.map(|(_, ours)| format!("here it is written {ours}"))
 }
 
-fn did_you_mean(near: Option<String>) -> Option<String> {
-    near.map(|near| format!("did you mean `{near}`?"))
+/// The help that suggests a name.
+pub fn did_you_mean(near: &str) -> String {
+    format!("did you mean `{near}`?")
 }
 
 /// A value that nobody declared.
 pub fn unknown_value(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0101", place, format!("there is no value `{name}` here"), "no such name")
-        .maybe_help(did_you_mean(near))
+        .maybe_help(near.map(|near| did_you_mean(&near)))
 }
 
 /// An alias that is missing: a file is imported, but its items joined ours.
@@ -73,7 +74,7 @@ pub fn missing_alias(place: Place, name: &str) -> Diagnostic {
 /// A node that nobody declared.
 pub fn unknown_callable(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0102", place, format!("there is no node `{name}`"), "no such node")
-        .maybe_help(foreign(name).or_else(|| did_you_mean(near)))
+        .maybe_help(foreign(name).or_else(|| near.map(|near| did_you_mean(&near))))
 }
 
 /// A name bound again in one body or file.
@@ -98,13 +99,14 @@ pub fn cycle(place: Place, names: &[&str]) -> Diagnostic {
 /// A field that a value does not have.
 pub fn unknown_field(place: Place, what: &str, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0105", place, format!("{what} has no field `{name}`"), "no such field")
-        .maybe_help(did_you_mean(near))
+        .maybe_help(near.map(|near| did_you_mean(&near)))
 }
 
 /// An assignment to something that is no output.
 pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0106", place, format!("`{node}` has no output `{name}`"), "not an output").maybe_help(
-        did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
+        near.map(|near| did_you_mean(&near))
+            .or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
     )
 }
 
@@ -112,7 +114,8 @@ pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>
 pub fn no_such_accumulator(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0106", place, format!("the fold has no accumulator `{name}`"), "not in its head")
         .maybe_help(
-            did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
+            near.map(|near| did_you_mean(&near))
+                .or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
         )
 }
 

@@ -14,7 +14,11 @@ pub fn error(file: u32, error: &SyntaxError) -> Diagnostic {
         SyntaxErrorKind::Unexpected { found, expected, help: None } => mend(found, expected),
         _ => error.help(),
     };
-    Diagnostic::new(error.code(), place, error.message(), error.label()).maybe_help(help)
+    let diagnostic = Diagnostic::new(error.code(), place, error.message(), error.label()).maybe_help(help);
+    match error.related {
+        Some((span, label)) => diagnostic.related(Place { file, span }, label),
+        None => diagnostic,
+    }
 }
 
 /// A likely mend of a token that can't stand where it does.

@@ -33,7 +33,7 @@ impl Place<'_, '_> {
             if !is_literal(&format!("\"{escape}\"")) {
                 let start = self.token.span.start as usize + at;
                 let kind = Kind::BadEscape { escape: escape.to_string() };
-                return Some(SyntaxError { kind, span: Span::new(start, start + length) });
+                return Some(SyntaxError::new(kind, Span::new(start, start + length)));
             }
             at += length;
         }
@@ -49,7 +49,7 @@ impl Place<'_, '_> {
         let text = format!(".{}", self.scan.text(next));
         let mend = Some(format!("0{text}"));
         let span = self.token.span.to(next.span);
-        Some(SyntaxError { kind: Kind::BadNumber { text, mend }, span })
+        Some(SyntaxError::new(Kind::BadNumber { text, mend }, span))
     }
 
     /// `1.`
@@ -61,6 +61,6 @@ impl Place<'_, '_> {
         }
         let text = format!("{}.", self.scan.text(number));
         let mend = Some(format!("{text}0"));
-        Some(SyntaxError { kind: Kind::BadNumber { text, mend }, span: number.span.to(dot.span) })
+        Some(SyntaxError::new(Kind::BadNumber { text, mend }, number.span.to(dot.span)))
     }
 }
