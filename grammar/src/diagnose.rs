@@ -120,7 +120,15 @@ impl<'a, 's> Place<'a, 's> {
 
     fn lambda(&self) -> Guess {
         let is_lambda = matches!(self.text, "|" | "||") && self.expects("an expression");
-        if is_lambda { self.here(Kind::StrayLambda) } else { None }
+        if is_lambda {
+            return self.here(Kind::StrayLambda);
+        }
+        // `|a, 1.0`
+        let is_open = self.expects("`|`") && self.expects("a name");
+        let mark = (1..).map_while(|i| self.at(-i)).find(|token| self.scan.text(*token) == "|");
+        let mark = mark.filter(|_| is_open)?;
+        let error = self.found(self.expected.to_vec(), self.habit());
+        Some(error.related(Some(mark.span), "the inputs of a lambda begin here"))
     }
 
     /// A keyword where a name would have done.
@@ -148,9 +156,35 @@ impl<'a, 's> Place<'a, 's> {
     }
 
     fn unexpected(&self) -> SyntaxError {
+        let error = self.found(self.expected.to_vec(), self.habit());
         let is_item = self.expects("an item") && is_first_of_line(self.scan, self.index);
-        let before = self.span_at(-1).filter(|_| !is_item);
-        self.found(self.expected.to_vec(), self.habit()).related(before, "after this")
+        if is_item { error } else { error.related(self.before(), "after this") }
+    }
+
+    /// What stands before this token: one token, or those that belong together.
+    fn before(&self) -> Option<Span> {
+        let last = self.span_at(-1)?;
+        let first = match self.text_at(-1) {
+            // `q1.0`
+            "." => self.span_at(-2),
+            // `f(x)), y)`: one of them closes too much.
+            ")" if self.text == "," => self.first_of_row(),
+            _ => None,
+        };
+        Some(first.map_or(last, |first| first.to(last)))
+    }
+
+    /// The first of the closing brackets that stand before this token without a gap.
+    fn first_of_row(&self) -> Option<Span> {
+        let mut first = self.at(-1)?;
+        for offset in 2.. {
+            let before = self.at(-offset).filter(|before| before.kind == TokenKind::Close);
+            match before.filter(|before| before.span.end == first.span.start) {
+                Some(before) => first = before,
+                None => break,
+            }
+        }
+        Some(first.span)
     }
 
     /// This token can't stand where it does.

@@ -54,6 +54,18 @@ impl<'s> Scan<'s> {
     pub fn text(&self, token: Token) -> &'s str {
         self.source.get(token.span.range()).unwrap_or_default()
     }
+
+    /// The text of the token at an index; nothing behind the last one.
+    pub fn text_of(&self, index: usize) -> &'s str {
+        self.tokens.get(index).map_or("", |token| self.text(*token))
+    }
+
+    /// How many bytes stand before a token on its line.
+    pub fn column(&self, index: usize) -> usize {
+        let start = self.tokens.get(index).map_or(0, |token| token.span.start as usize);
+        let before = self.source.get(..start).unwrap_or_default();
+        start - before.rfind('\n').map_or(0, |end| end + 1)
+    }
 }
 
 /// Marks of more than one character, the longest first.

@@ -120,9 +120,11 @@ fn delete_token(_: &str, tokens: &[Range<usize>], random: &mut Random) -> Option
 }
 
 fn duplicate_token(text: &str, tokens: &[Range<usize>], random: &mut Random) -> Option<Edit> {
+    // Nobody can tell which of the two was there before.
     let token = random.pick(tokens)?.clone();
-    let gap = if text[token.clone()].starts_with(is_word) { " " } else { "" };
-    Some(Edit::new(token.end..token.end, format!("{gap}{}", &text[token])))
+    let old = &text[token.clone()];
+    let gap = if old.starts_with(is_word) { " " } else { "" };
+    Some(Edit::new(token, format!("{old}{gap}{old}")))
 }
 
 fn swap_tokens(text: &str, tokens: &[Range<usize>], random: &mut Random) -> Option<Edit> {

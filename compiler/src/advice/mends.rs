@@ -1,27 +1,31 @@
 //! Places that explain an error, and names that were probably meant.
 
 use super::Texts;
+use super::consequences::{site, value};
 use super::names::{Binding, Kind, Names, contains};
 use crate::diagnostic::{Diagnostic, Place, names as sentences};
-use texgraph_grammar::syntax::{Name, Node, Span, Statement};
+use texgraph_grammar::syntax::{Name, Span, Statement};
 
 /// Other places that are shown of one error at most.
 const MOST: usize = 4;
+
+/// Places with what they are.
+type Related = Vec<(Span, String)>;
 
 /// Adds to an error what the text around it tells.
 pub(super) fn mend(texts: &Texts, diagnostic: &mut Diagnostic) {
     let Some(names) = texts.names(diagnostic) else { return };
     let text = texts.text(diagnostic.place);
     let added = match diagnostic.code {
-        "E0101" => unknown_value(names, diagnostic, text),
-        "E0110" if !names.has_node(text) => unknown_value(names, diagnostic, text),
+        "E0101" => unknown_value(texts, names, diagnostic, text),
+        "E0110" if !names.has_node(text) => unknown_value(texts, names, diagnostic, text),
         "E0102" => unknown_node(names, diagnostic, text),
         "E0106" => no_output(names, diagnostic, text),
         "E0107" => no_value(names, diagnostic),
-        "E0201" | "E0203" | "E0208" | "E0209" | "E0212" | "E0213" | "E0222" | "E0223" | "E0224" | "E0225" => {
-            types(texts, names, diagnostic)
-        }
-        "E0204" | "E0206" | "E0207" | "E0215" => in_call(names, diagnostic),
+        "E0201" | "E0203" | "E0208" | "E0209" | "E0212" | "E0213" | "E0219" | "E0222" | "E0223" | "E0224"
+        | "E0225" => types(texts, names, diagnostic),
+        "E0204" | "E0205" | "E0206" | "E0207" | "E0215" => in_call(names, diagnostic),
+        "E0220" => no_dimension(names, diagnostic),
         _ => Vec::new(),
     };
     for (span, label) in added {
@@ -33,32 +37,64 @@ pub(super) fn mend(texts: &Texts, diagnostic: &mut Diagnostic) {
     }
 }
 
-/// Places with what they are.
-type Related = Vec<(Span, String)>;
-
-/// A value that nobody declared: a name near it, else the one name that nobody reads.
-fn unknown_value(names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Related {
+/// A value that nobody declared: a name near it, the one name that nobody reads, or the inputs that
+/// it would be one of.
+fn unknown_value(texts: &Texts, names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Related {
     let place = diagnostic.place.span;
     let visible = |binding: &&Binding| {
         let is_value = !matches!(binding.kind, Kind::Node | Kind::Texture);
         is_value && contains(binding.scope, place) && !contains(binding.statement, place)
     };
     let visible: Vec<&Binding> = names.bindings.iter().filter(visible).collect();
-    let meant = near(text, &visible).or_else(|| only_unread(&visible));
-    meant.map_or(Vec::new(), |binding| did_you_mean(diagnostic, binding))
+    let near = near(text, &visible);
+    // Others may read what a file without textures declares.
+    let is_unread = |binding: &Binding| binding.kind != Kind::Item || names.has_texture();
+    let unread = only_unread(&visible).filter(|binding| is_unread(binding));
+    let mut meant = match (near, unread) {
+        (Some(near), Some(unread)) if near.reads > 0 => {
+            [did_you_mean(diagnostic, near), declared(unread)].concat()
+        }
+        (Some(meant), _) | (None, Some(meant)) => did_you_mean(diagnostic, meant),
+        (None, None) => Vec::new(),
+    };
+    if near.is_none() && unread.is_none_or(|unread| unread.kind == Kind::Item) {
+        meant.extend(not_an_input(texts, names, diagnostic));
+    }
+    meant
+}
+
+/// The brackets of the inputs of the node around an error.
+fn not_an_input(texts: &Texts, names: &Names, diagnostic: &Diagnostic) -> Option<(Span, String)> {
+    let node = names.node(diagnostic.place.span)?;
+    let first = node.dims.last().map_or(node.name.span.end, |dim| dim.span.end);
+    let last = node
+        .inputs
+        .last()
+        .map_or(first, |input| input.default.as_ref().map_or(input.ty.span.end, |default| default.span.end));
+    let end = node.outputs.first().map_or(last, |output| output.name.span.start);
+    let head = |start, end| texts.text(Place { span: Span { start, end }, ..diagnostic.place });
+    let start = first + head(first, end).find('(')? as u32;
+    let end = last.max(start) + head(last.max(start), end).find(')')? as u32 + 1;
+    let label = format!("no input of `{}` has this name", node.name.text);
+    Some((Span { start, end }, label)).filter(|_| !head(start, end).contains('\n'))
 }
 
 /// A node that nobody declared.
 fn unknown_node(names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Related {
-    let nodes: Vec<&Binding> = names.bindings.iter().filter(|binding| binding.kind == Kind::Node).collect();
+    let place = diagnostic.place.span;
+    let nodes = |binding: &&Binding| binding.kind == Kind::Node && !contains(binding.statement, place);
+    let nodes: Vec<&Binding> = names.bindings.iter().filter(nodes).collect();
     let near = near(text, &nodes);
     // The library may have a name that is nearer.
     let is_nearer = near.is_some_and(|near| {
         diagnostic.help.as_ref().is_none_or(|help| *help == sentences::did_you_mean(&near.name.text))
     });
-    let uncalled = only_unread(&nodes).filter(|_| diagnostic.help.is_none());
-    let meant = near.filter(|_| is_nearer).or(uncalled);
-    meant.map_or(Vec::new(), |binding| did_you_mean(diagnostic, binding))
+    match (near.filter(|_| is_nearer), only_unread(&nodes)) {
+        (Some(near), _) => did_you_mean(diagnostic, near),
+        (None, Some(uncalled)) if diagnostic.help.is_some() => declared(uncalled),
+        (None, Some(uncalled)) => did_you_mean(diagnostic, uncalled),
+        (None, None) => Vec::new(),
+    }
 }
 
 fn near<'n, 'a>(text: &str, among: &[&'n Binding<'a>]) -> Option<&'n Binding<'a>> {
@@ -68,19 +104,23 @@ fn near<'n, 'a>(text: &str, among: &[&'n Binding<'a>]) -> Option<&'n Binding<'a>
 
 /// The one binding that nobody reads: of the innermost scope that has any.
 fn only_unread<'n, 'a>(among: &[&'n Binding<'a>]) -> Option<&'n Binding<'a>> {
-    let unread =
-        || among.iter().copied().filter(|binding| binding.reads == 0 && binding.kind != Kind::Output);
-    let width = |binding: &&Binding| binding.scope.end - binding.scope.start;
-    let innermost = unread().map(|binding| width(&binding)).min()?;
+    let is_unread =
+        |binding: &&Binding| binding.reads == 0 && !matches!(binding.kind, Kind::Output | Kind::Dimension);
+    let unread = || among.iter().copied().filter(is_unread);
+    let width = |binding: &Binding| binding.scope.end - binding.scope.start;
+    let innermost = unread().map(width).min()?;
     let mut unread = unread().filter(|binding| width(binding) == innermost);
     unread.next().filter(|_| unread.next().is_none())
 }
 
 fn did_you_mean(diagnostic: &mut Diagnostic, binding: &Binding) -> Related {
-    let name = &binding.name.text;
+    diagnostic.help = Some(sentences::did_you_mean(&binding.name.text));
+    declared(binding)
+}
+
+fn declared(binding: &Binding) -> Related {
     let unread = if binding.reads == 0 { " and never used" } else { "" };
-    diagnostic.help = Some(sentences::did_you_mean(name));
-    vec![(binding.span, format!("`{name}` is declared here{unread}"))]
+    vec![(binding.span, format!("`{}` is declared here{unread}", binding.name.text))]
 }
 
 /// An assignment to something that is no output: the output that lacks a value.
@@ -99,10 +139,14 @@ fn no_output(names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Related 
         diagnostic.help = Some(sentences::did_you_mean(&meant.text));
         return vec![(meant.span, format!("`{}` is declared here and gets no value", meant.text))];
     }
-    let [first, .., last] = body.outputs.as_slice() else {
-        return body.outputs.iter().map(|only| (only.span, "this is declared".to_owned())).collect();
-    };
-    vec![(first.span.to(last.span), "these are declared".to_owned())]
+    declared_row(names, &body.outputs).into_iter().collect()
+}
+
+/// A row of declarations, with their types.
+fn declared_row(names: &Names, row: &[&Name]) -> Option<(Span, String)> {
+    let (first, last) = (names.bound(row.first()?)?, names.bound(row.last()?)?);
+    let label = if row.len() == 1 { "this is declared" } else { "these are declared" };
+    Some((first.span.to(last.span), label.to_owned()))
 }
 
 fn assigned(statement: &Statement) -> Option<&str> {
@@ -115,43 +159,59 @@ fn assigned(statement: &Statement) -> Option<&str> {
 /// An output without a value: the end of the body that should give it.
 fn no_value(names: &Names, diagnostic: &Diagnostic) -> Related {
     let declares = |name: &&Name| name.span == diagnostic.place.span;
-    let body = names.bodies.iter().find(|body| body.outputs.iter().any(|output| declares(output)));
+    let body = names.bodies.iter().find(|body| body.outputs.iter().any(|output| declares(&output)));
     let end = body.map(|body| body.body.span.end);
     let label = "the body ends without it".to_owned();
     end.map_or(Vec::new(), |end| vec![(Span { start: end.saturating_sub(1), end }, label)])
 }
 
+/// A dimension that nobody declared: those that are.
+fn no_dimension(names: &Names, diagnostic: &Diagnostic) -> Related {
+    let place = diagnostic.place.span;
+    let dims: Vec<&Name> = names.node(place).map_or(Vec::new(), |node| node.dims.iter().collect());
+    declared_row(names, &dims).into_iter().collect()
+}
+
 /// A value of the wrong type: where it comes from, and where it goes to.
 fn types(texts: &Texts, names: &Names, diagnostic: &Diagnostic) -> Related {
     let place = diagnostic.place.span;
-    let value = names.taken_apart(place).unwrap_or(place);
-    let operands = diagnostic.related.iter().map(|(place, _)| place.span);
-    let mut related: Related = std::iter::once(value)
-        .chain(operands)
-        .filter_map(|place| source(texts, names, diagnostic, place))
-        .collect();
+    let mut values = vec![value(names, place)];
+    values.extend(diagnostic.related.iter().map(|(place, _)| place.span));
+    if diagnostic.code == "E0219" {
+        let parts = names.call(place).into_iter().flat_map(|site| &site.call.arguments);
+        let is_plain = |value: &Span| !texts.text(Place { span: *value, ..diagnostic.place }).contains('(');
+        values.extend(parts.map(|part| part.value.span).filter(is_plain));
+    }
+    let sources = values.into_iter().filter_map(|value| source(texts, names, diagnostic, value));
+    let mut related: Related = sources.collect();
+    related.extend(names.base(place).map(|base| (base, "of this".to_owned())));
     related.extend(wanted_by_input(names, place).or_else(|| wanted_by_output(names, place)));
     related
 }
 
-/// Where a value comes from: its name's declaration, or the output of the node that gives it.
-fn source(texts: &Texts, names: &Names, diagnostic: &Diagnostic, place: Span) -> Option<(Span, String)> {
-    if let Some(binding) = names.meaning(place) {
-        // A `let` has the type of its value, which is shown too unless it is long.
-        let whole = Place { span: binding.span.to(binding.value), ..diagnostic.place };
-        let is_let = binding.value != Span::default() && !texts.text(whole).contains('\n');
-        let span = if is_let { whole.span } else { binding.span };
-        return Some((span, format!("`{}` is declared here", binding.name.text)));
+/// Where a value comes from: the declaration of the one name that it is made of, or the output of
+/// the node that gives it.
+fn source(texts: &Texts, names: &Names, diagnostic: &Diagnostic, value: Span) -> Option<(Span, String)> {
+    if let Some(node) = names.call(value).and_then(|site| names.callee(site)) {
+        let (first, last) = (node.outputs.first()?, node.outputs.last()?);
+        return Some((first.name.span.to(last.ty.span), format!("`{}` gives this", node.name.text)));
     }
-    let node = names.call(place).and_then(|site| names.callee(site))?;
-    let (first, last) = (node.outputs.first()?, node.outputs.last()?);
-    Some((first.name.span.to(last.ty.span), format!("`{}` gives this", node.name.text)))
+    let wires = names.read_within(value).into_iter().filter_map(|wire| names.bindings.get(wire));
+    let mut wires = wires.filter(|wire| names.meaning(value).is_some() || wire.kind == Kind::Wire);
+    let wire = wires.next().filter(|_| wires.next().is_none())?;
+    // A `let` has the type of its value, which is shown too unless it is long.
+    let whole = Place { span: wire.span.to(wire.value), ..diagnostic.place };
+    let is_let = wire.value != Span::default() && !texts.text(whole).contains('\n');
+    let span = if is_let { whole.span } else { wire.span };
+    Some((span, format!("`{}` is declared here", wire.name.text)))
 }
 
 /// The input that a value is an argument for.
 fn wanted_by_input(names: &Names, place: Span) -> Option<(Span, String)> {
     let (site, position) = names.argument(place)?;
-    let node: &Node = names.callee(site)?;
+    let Some(node) = names.callee(site) else {
+        return Some((site.call.name.span, "in this call".to_owned()));
+    };
     let named = site.call.arguments.iter().find(|argument| argument.value.span == place);
     let named = named.and_then(|argument| argument.name.as_ref());
     let input = match named {
@@ -171,10 +231,18 @@ fn wanted_by_output(names: &Names, place: Span) -> Option<(Span, String)> {
     Some((output.span, format!("`{}` is declared here", name.text)))
 }
 
-/// What is wrong with an argument may be wrong with the name of what is called.
+/// What is wrong with an argument may be wrong with the name of what is called, or with its head.
 fn in_call(names: &Names, diagnostic: &Diagnostic) -> Related {
-    let Some((site, _)) = names.argument(diagnostic.place.span) else { return Vec::new() };
-    let mut related = vec![(site.call.name.span, "in this call".to_owned())];
-    related.extend(names.callee(site).map(|node| (node.name.span, "which is declared here".to_owned())));
+    let Some(site) = site(names, diagnostic) else { return Vec::new() };
+    let name = site.call.name.span;
+    let mut related: Related = Vec::new();
+    related.extend(names.base(diagnostic.place.span).map(|base| (base, "of this".to_owned())));
+    if !contains(diagnostic.place.span, name) {
+        related.push((name, "in this call".to_owned()));
+    }
+    if let Some(node) = names.callee(site) {
+        let inputs: Vec<&Name> = node.inputs.iter().map(|input| &input.name).collect();
+        related.extend(declared_row(names, &inputs));
+    }
     related
 }

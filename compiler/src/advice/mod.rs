@@ -9,9 +9,12 @@
 //! It works on the syntax trees and on nothing that the checker knows, and only says more about
 //! errors that are there already.
 
+mod brackets;
 mod consequences;
 mod mends;
 mod names;
+
+pub use brackets::forgotten as forgotten_brackets;
 
 use crate::diagnostic::{Diagnostic, Place};
 use crate::module::Modules;

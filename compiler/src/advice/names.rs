@@ -22,6 +22,8 @@ pub enum Kind {
     Output,
     /// A `let` of a body, or the step of a fold.
     Wire,
+    /// A dimension variable.
+    Dimension,
 }
 
 /// A name where it is bound.
@@ -63,6 +65,8 @@ enum Base {
 
 /// A list of statements, and whose they are.
 pub struct Statements<'a> {
+    /// The node; none for a fold's.
+    pub node: Option<&'a Node>,
     /// The statements between their braces.
     pub body: &'a Body,
     /// The outputs or accumulators that they assign.
@@ -87,6 +91,8 @@ pub struct Names<'a> {
     assigned: FxHashMap<Span, &'a Name>,
     /// The value that names in brackets take apart.
     taken_apart: FxHashMap<Span, Span>,
+    /// What stands before the dot of a field or a method.
+    bases: FxHashMap<Span, Span>,
     scopes: Vec<FxHashMap<&'a str, usize>>,
     /// The nodes and textures by name, with their bindings; none where several share it.
     nodes: FxHashMap<&'a str, Option<(usize, &'a Node)>>,
@@ -119,6 +125,16 @@ impl<'a> Names<'a> {
         names
     }
 
+    /// The binding of a name where it is bound.
+    pub fn bound(&self, name: &Name) -> Option<&Binding<'a>> {
+        self.bindings.iter().find(|binding| binding.name.span == name.span)
+    }
+
+    /// Whether the file is one to draw, and not one that others take from.
+    pub fn has_texture(&self) -> bool {
+        self.bindings.iter().any(|binding| binding.kind == Kind::Texture)
+    }
+
     /// The binding that is meant where a name is read.
     pub fn meaning(&self, place: Span) -> Option<&Binding<'a>> {
         self.meanings.get(&place).and_then(|binding| self.bindings.get(*binding))
@@ -135,6 +151,12 @@ impl<'a> Names<'a> {
         named.filter(|_| site.base != Base::File).map(|(_, node)| node)
     }
 
+    /// How often the node of this file whose name stands here is called in this file.
+    pub fn count_calls(&self, name: Span) -> usize {
+        let of_node = |site: &&Site<'a>| self.callee(site).is_some_and(|node| node.name.span == name);
+        self.sites.iter().filter(of_node).count()
+    }
+
     /// The call that an expression is.
     pub fn call(&self, place: Span) -> Option<&Site<'a>> {
         self.calls.get(&place).and_then(|site| self.sites.get(*site))
@@ -145,6 +167,11 @@ impl<'a> Names<'a> {
     pub fn argument(&self, place: Span) -> Option<(&Site<'a>, usize)> {
         let (site, position) = self.arguments.get(&place)?;
         Some((self.sites.get(*site)?, *position))
+    }
+
+    /// What stands before the dot of a field or a method.
+    pub fn base(&self, field: Span) -> Option<Span> {
+        self.bases.get(&field).copied()
     }
 
     /// The value that names in brackets take apart.
@@ -161,6 +188,21 @@ impl<'a> Names<'a> {
     pub fn body(&self, place: Span) -> Option<&Statements<'a>> {
         let around = self.bodies.iter().filter(|inner| contains(inner.body.span, place));
         around.min_by_key(|inner| inner.body.span.end - inner.body.span.start)
+    }
+
+    /// The node around a place.
+    pub fn node(&self, place: Span) -> Option<&'a Node> {
+        let mut nodes = self.bodies.iter().filter_map(|body| body.node);
+        nodes.find(|node| contains(whole(node), place))
+    }
+
+    /// The bindings that are read within a place.
+    pub fn read_within(&self, place: Span) -> Vec<usize> {
+        let inside = self.meanings.iter().filter(|(read, _)| contains(place, **read));
+        let mut read: Vec<usize> = inside.map(|(_, binding)| *binding).collect();
+        read.sort_unstable();
+        read.dedup();
+        read
     }
 
     fn declare(&mut self, item: &'a Item, scope: Span) {
@@ -212,6 +254,7 @@ impl<'a> Names<'a> {
     fn in_node(&mut self, item: &'a Item, node: &'a Node) {
         self.scopes.push(FxHashMap::default());
         let at = |kind| At::head(kind, item.span);
+        node.dims.iter().for_each(|dim| self.bind(dim, dim.span, at(Kind::Dimension)));
         for input in &node.inputs {
             self.bind(&input.name, input.name.span.to(input.ty.span), at(Kind::Input));
         }
@@ -219,12 +262,14 @@ impl<'a> Names<'a> {
             self.bind(&output.name, output.name.span.to(output.ty.span), at(Kind::Output));
         }
         node.inputs.iter().filter_map(|input| input.default.as_ref()).for_each(|default| self.expr(default));
-        self.body_of(&node.body, node.outputs.iter().map(|output| &output.name).collect());
+        let outputs = node.outputs.iter().map(|output| &output.name).collect();
+        self.body_of(Statements { node: Some(node), body: &node.body, outputs });
         self.scopes.pop();
     }
 
-    fn body_of(&mut self, body: &'a Body, outputs: Vec<&'a Name>) {
-        self.bodies.push(Statements { body, outputs });
+    fn body_of(&mut self, statements: Statements<'a>) {
+        let body = statements.body;
+        self.bodies.push(statements);
         for statement in &body.statements {
             let Statement::Let { pattern, span, value } = statement else { continue };
             let at = At { statement: *span, value: value.span, ..At::head(Kind::Wire, body.span) };
@@ -258,7 +303,8 @@ impl<'a> Names<'a> {
         });
         fold.condition.iter().for_each(|condition| self.expr(condition));
         self.bind(&fold.variable, fold.variable.span, at(Kind::Wire));
-        self.body_of(&fold.body, fold.accumulators.iter().map(|(name, _)| name).collect());
+        let outputs = fold.accumulators.iter().map(|(name, _)| name).collect();
+        self.body_of(Statements { node: None, body: &fold.body, outputs });
         self.scopes.pop();
     }
 
@@ -284,6 +330,7 @@ impl<'a> Names<'a> {
         self.calls.insert(place, site);
         let mut position = 0;
         if let Base::Receiver(receiver) = base {
+            self.bases.insert(call.name.span, receiver);
             self.arguments.insert(receiver, (site, position));
             position += 1;
         }
@@ -348,7 +395,7 @@ impl<'a> Names<'a> {
 
     fn link(&mut self, link: &'a Postfix, before: Span, of_file: bool) {
         match link {
-            Postfix::Field(_) => {}
+            Postfix::Field(name) => drop(self.bases.insert(name.span, before)),
             Postfix::Method(call, span) => {
                 let base = if of_file { Base::File } else { Base::Receiver(before) };
                 self.called(call, before.to(*span), base);
@@ -363,6 +410,11 @@ fn end_of(link: &Postfix) -> Span {
         Postfix::Field(name) => name.span,
         Postfix::Method(_, span) | Postfix::Index(_, span) => *span,
     }
+}
+
+/// A node from its name to its end.
+pub fn whole(node: &Node) -> Span {
+    node.name.span.to(node.body.span)
 }
 
 /// Whether one stretch lies within another.

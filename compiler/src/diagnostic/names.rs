@@ -3,12 +3,17 @@
 use super::{Diagnostic, Place};
 
 /// The candidate that a misspelt name most likely means: one that differs only in case and
-/// underscores, or else in less than about a third of its letters.
+/// underscores, has a word more or less (`cell`, `my_cell`), or else differs in less than about a
+/// third of its letters.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let plain = |name: &str| name.replace('_', "").to_lowercase();
     let distance = |candidate: &str| {
         let same = plain(candidate) == plain(name) && !plain(name).is_empty();
-        if same { 0 } else { strsim::damerau_levenshtein(name, candidate) }
+        match same {
+            true => 0,
+            false if has_word(name, candidate) || has_word(candidate, name) => 1,
+            false => strsim::damerau_levenshtein(name, candidate),
+        }
     };
     let others = candidates.into_iter().filter(|candidate| *candidate != name);
     others
@@ -19,6 +24,13 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         })
         .min()
         .map(|(_, candidate)| candidate.to_owned())
+}
+
+/// Whether a name is another one with words before or behind.
+fn has_word(whole: &str, part: &str) -> bool {
+    let rest = whole.strip_prefix(part).is_some_and(|rest| rest.starts_with('_'))
+        || whole.strip_suffix(part).is_some_and(|rest| rest.ends_with('_'));
+    rest && part.len() > 2
 }
 
 /// What functions of shading languages are here.

@@ -26,6 +26,7 @@ fn mend(found: &str, expected: &[&str]) -> Option<String> {
     let wants = |what: &str| expected.contains(&what);
     let found = found.trim_matches('`');
     Some(match found {
+        _ if wants("`else`") && names::nearest(found, ["else"]).is_some() => names::did_you_mean("else"),
         _ if wants("an item") => {
             let near = names::nearest(found, ITEMS)?;
             format!("did you mean `{near}`?")

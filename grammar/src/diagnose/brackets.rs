@@ -35,10 +35,16 @@ impl Place<'_, '_> {
         open_bracket(self.scan, self.tokens.start..self.index)
     }
 
+    /// Whether a line begins here that can't stand within such brackets.
+    fn begins_outside(&self, close: char) -> bool {
+        let is_statement = self.text == "let" || (self.is_name(0) && self.text_at(1) == "=");
+        let begins = if is_statement { close != '}' } else { is_item_keyword(self.text) };
+        begins && is_first_of_line(self.scan, self.index)
+    }
+
     /// A bracket that is not closed before this token, or closes nothing.
     pub(super) fn bracket(&self) -> Guess {
         let open = self.open_bracket();
-        let begins_statement = is_item_keyword(self.text) && is_first_of_line(self.scan, self.index);
         let Some(open) = open else {
             return if self.token.kind == TokenKind::Close { self.unopened() } else { None };
         };
@@ -48,17 +54,55 @@ impl Place<'_, '_> {
             TokenKind::Close if close == '}' && self.text != "}" => self.unopened(),
             TokenKind::Close if !self.text.starts_with(close) => self.unclosed(open),
             // Where an expression is missing, that is the better thing to say.
-            TokenKind::Word if begins_statement && !self.expects("an expression") => self.unclosed(open),
+            TokenKind::Word if self.begins_outside(close) && !self.expects("an expression") => {
+                self.unclosed(open)
+            }
             _ if self.index >= self.tokens.end => self.unclosed(open),
+            // The inputs end here.
+            _ if self.text == "->" && close == ')' && !self.expects("an expression") => self.unclosed(open),
             _ => None,
         }
     }
 
     fn unclosed(&self, token: Token) -> Guess {
+        if let Some(error) = self.unclosed_by_indentation() {
+            return Some(error);
+        }
         let (open, close) = pair(self.scan.text(token));
         let error = SyntaxError::new(Kind::Unclosed { open, close }, token.span);
+        if self.token.kind == TokenKind::Close && !is_first_of_line(self.scan, self.index) {
+            return Some(error.related(Some(self.token.span), "this closes another kind"));
+        }
+        if self.text == "->" {
+            let around = self.span_at(-1).map(|last| last.to(self.token.span));
+            return Some(error.related(around, "still open here"));
+        }
         let last = self.span_at(-1).filter(|last| *last != token.span);
         Some(error.related(last, "still open after this"))
+    }
+
+    /// A brace that is open where a line stands as far to the left as the line that opened it.
+    fn unclosed_by_indentation(&self) -> Guess {
+        let column = |index: usize| self.scan.column(index);
+        let mut line = 0;
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        for index in self.tokens.start..self.index {
+            let token = self.scan.tokens.get(index)?;
+            let begins_line = is_first_of_line(self.scan, index);
+            line = if begins_line { column(index) } else { line };
+            let innermost = open.last().copied().filter(|(brace, _)| self.scan.text_of(*brace) == "{");
+            match (token.kind, innermost) {
+                (TokenKind::Close, _) => drop(open.pop()),
+                (_, Some((brace, indentation))) if begins_line && line <= indentation => {
+                    let brace = self.scan.tokens.get(brace)?.span;
+                    let error = SyntaxError::new(Kind::Unclosed { open: '{', close: '}' }, brace);
+                    return Some(error.related(Some(token.span), "still open before this line"));
+                }
+                (TokenKind::Open, _) => open.push((index, line)),
+                _ => {}
+            }
+        }
+        None
     }
 
     pub(super) fn unopened(&self) -> Guess {

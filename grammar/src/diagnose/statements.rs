@@ -16,6 +16,10 @@ impl Place<'_, '_> {
         if self.text == "}" && self.text_at(1) == "else" {
             return self.unopened();
         }
+        // `{ a } esle { b }`
+        if self.is_name(0) && !is_first_of_line(self.scan, self.index) {
+            return Some(self.found(vec!["`else`"], None));
+        }
         let mut depth = 0usize;
         for token in self.scan.tokens.get(self.tokens.start..self.index)?.iter().rev() {
             match (token.kind, self.scan.text(*token)) {
