@@ -4,6 +4,7 @@ use super::Texts;
 use super::consequences::{site, value};
 use super::names::{Binding, Kind, Names, contains};
 use crate::diagnostic::{Diagnostic, Place, names as sentences};
+use crate::input::INPUTS;
 use texgraph_grammar::syntax::{Name, Span, Statement};
 
 /// Other places that are shown of one error at most.
@@ -18,7 +19,7 @@ pub(super) fn mend(texts: &Texts, diagnostic: &mut Diagnostic) {
     let text = texts.text(diagnostic.place);
     let added = match diagnostic.code {
         "E0101" => unknown_value(texts, names, diagnostic, text),
-        "E0110" if !names.has_node(text) => unknown_value(texts, names, diagnostic, text),
+        "E0110" if is_library_name(names, diagnostic, text) => unknown_value(texts, names, diagnostic, text),
         "E0102" => unknown_node(names, diagnostic, text),
         "E0106" => no_output(names, diagnostic, text),
         "E0107" => no_value(names, diagnostic),
@@ -29,12 +30,17 @@ pub(super) fn mend(texts: &Texts, diagnostic: &mut Diagnostic) {
         _ => Vec::new(),
     };
     for (span, label) in added {
-        let place = Place { span, ..diagnostic.place };
-        let is_new = place != diagnostic.place && diagnostic.related.iter().all(|(known, _)| *known != place);
+        let is_apart = |known: Place| known.file != diagnostic.place.file || !overlap(known.span, span);
+        let is_new =
+            is_apart(diagnostic.place) && diagnostic.related.iter().all(|(known, _)| is_apart(*known));
         if is_new && diagnostic.related.len() < MOST {
-            diagnostic.related.push((place, label));
+            diagnostic.related.push((Place { span, ..diagnostic.place }, label));
         }
     }
+}
+
+fn overlap(a: Span, b: Span) -> bool {
+    a.start < b.end && b.start < a.end
 }
 
 /// A value that nobody declared: a name near it, the one name that nobody reads, or the inputs that
@@ -48,35 +54,51 @@ fn unknown_value(texts: &Texts, names: &Names, diagnostic: &mut Diagnostic, text
     let visible: Vec<&Binding> = names.bindings.iter().filter(visible).collect();
     let near = near(text, &visible);
     // Others may read what a file without textures declares.
-    let is_unread = |binding: &Binding| binding.kind != Kind::Item || names.has_texture();
-    let unread = only_unread(&visible).filter(|binding| is_unread(binding));
-    let mut meant = match (near, unread) {
-        (Some(near), Some(unread)) if near.reads > 0 => {
-            [did_you_mean(diagnostic, near), declared(unread)].concat()
-        }
-        (Some(meant), _) | (None, Some(meant)) => did_you_mean(diagnostic, meant),
-        (None, None) => Vec::new(),
-    };
-    if near.is_none() && unread.is_none_or(|unread| unread.kind == Kind::Item) {
-        meant.extend(not_an_input(texts, names, diagnostic));
+    let is_for_others = |binding: &Binding| binding.kind == Kind::Item && !names.has_texture();
+    let unread = only_unread(&visible).filter(|binding| !is_for_others(binding));
+    let unread = unread.filter(|_| near.is_none_or(|near| near.reads > 0));
+    let mut related = Vec::new();
+    if let Some(near) = near {
+        diagnostic.help = Some(sentences::did_you_mean(&near.name.text));
+        related.push(declared(near));
     }
-    meant
+    related.extend(unread.map(declared));
+    if near.is_none() {
+        related.extend(inputs(texts, names, diagnostic, text));
+    }
+    related
 }
 
-/// The brackets of the inputs of the node around an error.
-fn not_an_input(texts: &Texts, names: &Names, diagnostic: &Diagnostic) -> Option<(Span, String)> {
-    let node = names.node(diagnostic.place.span)?;
+/// The brackets of the inputs of the node around an unknown name. A texture has inputs of a few
+/// names only.
+fn inputs(texts: &Texts, names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Option<(Span, String)> {
+    let place = diagnostic.place;
+    let node = names.node(place.span)?;
+    let known = INPUTS.iter().find(|known| known.name == text);
+    if let Some(known) = known {
+        let input = format!("{}: {}", known.name, known.types.first()?);
+        diagnostic.help = Some(sentences::not_passed_on(&node.name.text, &input));
+    } else if names.is_texture(node) {
+        return None;
+    }
     let first = node.dims.last().map_or(node.name.span.end, |dim| dim.span.end);
     let last = node
         .inputs
         .last()
         .map_or(first, |input| input.default.as_ref().map_or(input.ty.span.end, |default| default.span.end));
     let end = node.outputs.first().map_or(last, |output| output.name.span.start);
-    let head = |start, end| texts.text(Place { span: Span { start, end }, ..diagnostic.place });
+    let head = |start, end| texts.text(Place { span: Span { start, end }, ..place });
     let start = first + head(first, end).find('(')? as u32;
     let end = last.max(start) + head(last.max(start), end).find(')')? as u32 + 1;
-    let label = format!("no input of `{}` has this name", node.name.text);
+    let label = format!("the inputs of `{}`", node.name.text);
     Some((Span { start, end }, label)).filter(|_| !head(start, end).contains('\n'))
+}
+
+/// Whether a name without a call is that of a node of the library: a value may have been meant.
+fn is_library_name(names: &Names, diagnostic: &Diagnostic, text: &str) -> bool {
+    let place = diagnostic.place.span;
+    let is_called = || names.sites.iter().any(|site| site.call.name.span == place);
+    !names.has_node(text) && names.base(place).is_none() && !is_called()
 }
 
 /// A node that nobody declared.
@@ -89,12 +111,11 @@ fn unknown_node(names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Relat
     let is_nearer = near.is_some_and(|near| {
         diagnostic.help.as_ref().is_none_or(|help| *help == sentences::did_you_mean(&near.name.text))
     });
-    match (near.filter(|_| is_nearer), only_unread(&nodes)) {
-        (Some(near), _) => did_you_mean(diagnostic, near),
-        (None, Some(uncalled)) if diagnostic.help.is_some() => declared(uncalled),
-        (None, Some(uncalled)) => did_you_mean(diagnostic, uncalled),
-        (None, None) => Vec::new(),
+    let meant = near.filter(|_| is_nearer);
+    if let Some(near) = meant {
+        diagnostic.help = Some(sentences::did_you_mean(&near.name.text));
     }
+    meant.or_else(|| only_unread(&nodes)).map(declared).into_iter().collect()
 }
 
 fn near<'n, 'a>(text: &str, among: &[&'n Binding<'a>]) -> Option<&'n Binding<'a>> {
@@ -113,14 +134,9 @@ fn only_unread<'n, 'a>(among: &[&'n Binding<'a>]) -> Option<&'n Binding<'a>> {
     unread.next().filter(|_| unread.next().is_none())
 }
 
-fn did_you_mean(diagnostic: &mut Diagnostic, binding: &Binding) -> Related {
-    diagnostic.help = Some(sentences::did_you_mean(&binding.name.text));
-    declared(binding)
-}
-
-fn declared(binding: &Binding) -> Related {
+fn declared(binding: &Binding) -> (Span, String) {
     let unread = if binding.reads == 0 { " and never used" } else { "" };
-    vec![(binding.span, format!("`{}` is declared here{unread}", binding.name.text))]
+    (binding.span, format!("`{}` is declared here{unread}", binding.name.text))
 }
 
 /// An assignment to something that is no output: the output that lacks a value.
@@ -185,7 +201,9 @@ fn types(texts: &Texts, names: &Names, diagnostic: &Diagnostic) -> Related {
     let sources = values.into_iter().filter_map(|value| source(texts, names, diagnostic, value));
     let mut related: Related = sources.collect();
     related.extend(names.base(place).map(|base| (base, "of this".to_owned())));
-    related.extend(wanted_by_input(names, place).or_else(|| wanted_by_output(names, place)));
+    if matches!(diagnostic.code, "E0201" | "E0213" | "E0222" | "E0223") {
+        related.extend(wanted_by_input(names, place).or_else(|| wanted_by_output(names, place)));
+    }
     related
 }
 

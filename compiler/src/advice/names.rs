@@ -130,6 +130,11 @@ impl<'a> Names<'a> {
         self.bindings.iter().find(|binding| binding.name.span == name.span)
     }
 
+    /// Whether a node is a texture.
+    pub fn is_texture(&self, node: &Node) -> bool {
+        self.bound(&node.name).is_some_and(|binding| binding.kind == Kind::Texture)
+    }
+
     /// Whether the file is one to draw, and not one that others take from.
     pub fn has_texture(&self) -> bool {
         self.bindings.iter().any(|binding| binding.kind == Kind::Texture)

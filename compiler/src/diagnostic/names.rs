@@ -70,6 +70,11 @@ pub fn did_you_mean(near: &str) -> String {
     format!("did you mean `{near}`?")
 }
 
+/// The help for an input of textures that is read where it is not declared.
+pub fn not_passed_on(node: &str, input: &str) -> String {
+    format!("nothing is passed on by itself: add `{input}` to the inputs of `{node}`")
+}
+
 /// A value that nobody declared.
 pub fn unknown_value(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0101", place, format!("there is no value `{name}` here"), "no such name")

@@ -77,7 +77,7 @@ impl Place<'_, '_> {
             return None;
         }
         let error = SyntaxError::new(Kind::NotAnAssignment { is_return }, before.span);
-        Some(error.related((!is_return).then_some(self.token.span), "a `=` would stand before this"))
+        Some(error.related((!is_return).then_some(self.token.span), "expected `=`"))
     }
 
     /// Whether the token before could be the first of a statement: not the name behind `let`, nor
