@@ -8,6 +8,7 @@
 //! [`compile`] reads as that picture. No file is opened here: a host hands text in through a
 //! [`module::Loader`], and gets back plain data.
 
+mod advice;
 mod check;
 pub mod color;
 pub mod contract;
@@ -114,7 +115,8 @@ pub fn compile(
 ) -> Result<Compiled, Failure> {
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
-    let (graphs, label) = checked(library, &modules, options).map_err(fail)?;
+    let checked = checked(library, &modules, options);
+    let (graphs, label) = checked.map_err(|diagnostics| fail(advice::advise(&modules, diagnostics)))?;
     let optimised =
         graphs.into_iter().map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph), bake });
     let graphs: Vec<PassGraph> = optimised.collect();
@@ -138,7 +140,7 @@ pub fn check(library: &Library, main: &str, loader: &dyn Loader) -> Result<Sourc
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     checker.everything();
-    let diagnostics = checker.into_diagnostics();
+    let diagnostics = advice::advise(&modules, checker.into_diagnostics());
     if diagnostics.is_empty() {
         Ok(modules.sources)
     } else {

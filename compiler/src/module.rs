@@ -2,6 +2,7 @@
 //!
 //! The compiler opens no file. A host hands text in through a [`Loader`].
 
+use crate::advice;
 use crate::diagnostic::{Diagnostic, Place, imports, syntax};
 use crate::library::Library;
 use std::collections::HashMap;
@@ -97,6 +98,7 @@ pub fn load(
     library: &Library,
 ) -> Result<Modules, (Sources, Vec<Diagnostic>)> {
     let mut walk = Walk {
+        library,
         sources: library.sources().clone(),
         modules: library.modules().to_vec(),
         seen: HashMap::new(),
@@ -111,7 +113,8 @@ pub fn load(
     }
 }
 
-struct Walk {
+struct Walk<'l> {
+    library: &'l Library,
     sources: Sources,
     modules: Vec<Module>,
     /// Finished files by path; `None` while open or when broken.
@@ -119,7 +122,7 @@ struct Walk {
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Walk {
+impl Walk<'_> {
     fn run(&mut self, main: &str, loader: &dyn Loader) {
         let (folder, name) = main.rsplit_once('/').unwrap_or(("", main));
         let mut stack: Vec<Open> = self.open(name, folder, None, loader).into_iter().collect();
@@ -174,7 +177,10 @@ impl Walk {
                 Some(Open { file, path: path.to_owned(), tree: Arc::new(tree), uses, imports: Vec::new() })
             }
             Err(errors) => {
-                self.diagnostics.extend(errors.iter().map(|error| syntax::error(file, error)));
+                let errors = errors.iter().map(|error| syntax::error(file, error));
+                let mut errors: Vec<Diagnostic> = errors.collect();
+                advice::forgotten_brackets(self.library, &text, &mut errors);
+                self.diagnostics.extend(errors);
                 None
             }
         }

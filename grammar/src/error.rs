@@ -43,6 +43,8 @@ pub struct SyntaxError {
     pub kind: SyntaxErrorKind,
     /// The offending token; empty only in an empty text.
     pub span: Span,
+    /// Another place that matters, with a few words for it.
+    pub related: Option<(Span, &'static str)>,
 }
 
 /// What can be wrong with a text.
@@ -155,6 +157,16 @@ pub enum SyntaxErrorKind {
 }
 
 impl SyntaxError {
+    pub(crate) fn new(kind: SyntaxErrorKind, span: Span) -> SyntaxError {
+        SyntaxError { kind, span, related: None }
+    }
+
+    /// With another place that matters, if there is one.
+    pub(crate) fn related(mut self, place: Option<Span>, label: &'static str) -> SyntaxError {
+        self.related = place.map(|span| (span, label)).or(self.related);
+        self
+    }
+
     /// The code that `texgraph explain` knows.
     pub fn code(&self) -> &'static str {
         use SyntaxErrorKind as Kind;

@@ -42,7 +42,7 @@ pub(crate) fn check(scan: &Scan<'_>, tokens: &[Token]) -> Result<(), SyntaxError
     for token in tokens {
         counter.step(token.kind, scan.text(*token));
         if counter.depth + counter.prefixes > MAX_NESTING {
-            return Err(SyntaxError { kind: SyntaxErrorKind::TooDeep, span: token.span });
+            return Err(SyntaxError::new(SyntaxErrorKind::TooDeep, token.span));
         }
     }
     Ok(())

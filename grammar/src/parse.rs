@@ -189,6 +189,6 @@ impl Builder<'_> {
     /// The error for a pair that the grammar promises and that is not there.
     fn missing(&self, what: &'static str) -> SyntaxError {
         let span = Span::new(self.offset, self.offset);
-        SyntaxError { kind: SyntaxErrorKind::Grammar { missing: what }, span }
+        SyntaxError::new(SyntaxErrorKind::Grammar { missing: what }, span)
     }
 }

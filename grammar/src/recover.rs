@@ -2,7 +2,7 @@
 //!
 //! A piece begins where an item keyword is the first token of a line and either no bracket is open,
 //! or the word stands in column 0 where no body could hold it: then a bracket before it was
-//! forgotten.
+//! forgotten. An indented `let` begins none: it is a statement of a body whose head is broken.
 
 use crate::scan::{Scan, Token, TokenKind};
 use std::ops::Range;
@@ -62,7 +62,8 @@ fn begins_item(scan: &Scan<'_>, index: usize, bracket: Option<&str>) -> bool {
         return false;
     }
     match bracket {
-        None => true,
+        // An indented `let` is more likely a statement of a body whose head is broken.
+        None => word != "let" || is_in_column_0(scan.source, token),
         // A `let` at the margin may be a statement of the body around it.
         Some("{") if word == "let" => false,
         Some(_) => is_in_column_0(scan.source, token),
@@ -85,7 +86,8 @@ pub(crate) fn is_first_of_line(scan: &Scan<'_>, index: usize) -> bool {
     })
 }
 
-fn is_in_column_0(source: &str, token: Token) -> bool {
+/// Whether nothing, not even a blank, stands before a token on its line.
+pub(crate) fn is_in_column_0(source: &str, token: Token) -> bool {
     let start = token.span.start as usize;
     start == 0 || source.as_bytes().get(start - 1) == Some(&b'\n')
 }

@@ -54,6 +54,18 @@ impl<'s> Scan<'s> {
     pub fn text(&self, token: Token) -> &'s str {
         self.source.get(token.span.range()).unwrap_or_default()
     }
+
+    /// The text of the token at an index; nothing behind the last one.
+    pub fn text_of(&self, index: usize) -> &'s str {
+        self.tokens.get(index).map_or("", |token| self.text(*token))
+    }
+
+    /// How many bytes stand before a token on its line.
+    pub fn column(&self, index: usize) -> usize {
+        let start = self.tokens.get(index).map_or(0, |token| token.span.start as usize);
+        let before = self.source.get(..start).unwrap_or_default();
+        start - before.rfind('\n').map_or(0, |end| end + 1)
+    }
 }
 
 /// Marks of more than one character, the longest first.
@@ -63,10 +75,8 @@ const SYMBOLS: [&str; 17] =
 /// Scans a text of at most [`MAX_BYTES`] bytes.
 pub(crate) fn scan(source: &str) -> Result<Scan<'_>, SyntaxError> {
     if source.len() > MAX_BYTES {
-        return Err(SyntaxError {
-            kind: SyntaxErrorKind::FileTooLarge { bytes: source.len() },
-            span: beyond_limit(source),
-        });
+        let kind = SyntaxErrorKind::FileTooLarge { bytes: source.len() };
+        return Err(SyntaxError::new(kind, beyond_limit(source)));
     }
     let scan = Scan { source, tokens: Vec::new(), comments: Vec::new(), errors: Vec::new() };
     let mut scanner = Scanner { scan, bytes: source.as_bytes(), at: 0 };
@@ -129,7 +139,7 @@ impl Scanner<'_> {
     }
 
     fn fail(&mut self, kind: SyntaxErrorKind, start: usize, end: usize) {
-        self.scan.errors.push(SyntaxError { kind, span: Span::new(start, end) });
+        self.scan.errors.push(SyntaxError::new(kind, Span::new(start, end)));
     }
 
     fn skip_word(&mut self) {

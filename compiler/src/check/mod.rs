@@ -129,7 +129,8 @@ pub struct Frame<'a> {
     bound: FxHashSet<&'a str>,
     /// Where names stand that were bound before: the first binding holds.
     repeated: FxHashSet<u32>,
-    /// Outputs whose declared type is wrong: what they get is not looked at.
+    /// Outputs whose declared type is wrong, and names that are bound twice: what they get is not
+    /// looked at.
     doubtful: FxHashSet<&'a str>,
     /// Names that nobody declared, reported once.
     unknown: plan::Reported,
@@ -365,6 +366,9 @@ impl<'a> Checker<'a> {
         // A bare word that reaches a wire is a name that nobody declared.
         let wire =
             if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
+        let is_doubtful = f.doubtful.contains(name.text.as_str());
+        f.failed |= is_doubtful;
+        let wire = if is_doubtful { Wire::Unknown } else { wire };
         if let Some(scope) = f.scopes.last_mut()
             && !f.repeated.contains(&name.span.start)
         {

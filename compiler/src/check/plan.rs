@@ -1,6 +1,7 @@
 //! The plan of a function: its statements as steps in an order that works, and what is wrong with
 //! the names that they bind.
 
+use super::wire::Wire;
 use super::{Checker, Frame, Step, Target, globals, order};
 use crate::diagnostic::names;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -68,7 +69,8 @@ impl<'a> Checker<'a> {
     }
 
     fn assign(&mut self, f: &mut Frame<'a>, node: &'a Node, name: &Name) {
-        if !is_output(node, name) {
+        // Where one output is declared twice, another was meant: that is said of the head.
+        if !is_output(node, name) && !has_equal_outputs(node) {
             let near = self.near(&name.text, node.outputs.iter().map(|o| o.name.text.as_str()));
             let place = self.place(f, name.span);
             self.report(f, names::no_such_output(place, &node.name.text, &name.text, near));
@@ -110,6 +112,11 @@ impl<'a> Checker<'a> {
             let first = *seen.entry(&name.text).or_insert(name);
             if first.span != name.span {
                 f.repeated.insert(name.span.start);
+                // Nobody knows which of the two is meant where the name is read.
+                f.doubtful.insert(&name.text);
+                if let Some(wire) = f.scopes.first_mut().and_then(|scope| scope.get_mut(name.text.as_str())) {
+                    *wire = Wire::Unknown;
+                }
                 let (place, first) = (self.place(f, name.span), self.place(f, first.span));
                 self.report(f, names::bound_twice(place, &name.text, first));
             }
@@ -168,6 +175,12 @@ impl<'a> Checker<'a> {
 
 fn is_output(node: &Node, name: &Name) -> bool {
     node.outputs.iter().any(|output| output.name.text == name.text)
+}
+
+/// Whether two outputs of a node have one name.
+pub(super) fn has_equal_outputs(node: &Node) -> bool {
+    let names: FxHashSet<&str> = node.outputs.iter().map(|output| output.name.text.as_str()).collect();
+    names.len() < node.outputs.len()
 }
 
 /// The name that a statement assigns.

@@ -2,6 +2,7 @@
 
 use super::constructor::placeholder;
 use super::node::{open_input, slots};
+use super::plan::has_equal_outputs;
 use super::types::{self, Declared, NodeType};
 use super::wire::{ArgumentKey, Key, Wire};
 use super::{Checker, Frame, Outcome};
@@ -242,7 +243,9 @@ impl<'a> Checker<'a> {
                 self.diagnostics.push(unsupported::not_yet(place, "a default of a texture's input"));
             }
         }
-        for output in &node.outputs {
+        // Where one output is declared twice, another was meant.
+        let outputs = if has_equal_outputs(node) { &[][..] } else { &node.outputs };
+        for output in outputs {
             if let Some((name, types)) = OUTPUTS.iter().find(|(name, _)| *name == output.name.text) {
                 self.fixed_type(name, types, &output.ty, file);
             }

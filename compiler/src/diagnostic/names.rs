@@ -3,12 +3,17 @@
 use super::{Diagnostic, Place};
 
 /// The candidate that a misspelt name most likely means: one that differs only in case and
-/// underscores, or else in less than about a third of its letters.
+/// underscores, has a word more or less (`cell`, `my_cell`), or else differs in less than about a
+/// third of its letters.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let plain = |name: &str| name.replace('_', "").to_lowercase();
     let distance = |candidate: &str| {
         let same = plain(candidate) == plain(name) && !plain(name).is_empty();
-        if same { 0 } else { strsim::damerau_levenshtein(name, candidate) }
+        match same {
+            true => 0,
+            false if has_word(name, candidate) || has_word(candidate, name) => 1,
+            false => strsim::damerau_levenshtein(name, candidate),
+        }
     };
     let others = candidates.into_iter().filter(|candidate| *candidate != name);
     others
@@ -19,6 +24,13 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         })
         .min()
         .map(|(_, candidate)| candidate.to_owned())
+}
+
+/// Whether a name is another one with words before or behind.
+fn has_word(whole: &str, part: &str) -> bool {
+    let rest = whole.strip_prefix(part).is_some_and(|rest| rest.starts_with('_'))
+        || whole.strip_suffix(part).is_some_and(|rest| rest.ends_with('_'));
+    rest && part.len() > 2
 }
 
 /// What functions of shading languages are here.
@@ -53,14 +65,20 @@ fn foreign(name: &str) -> Option<String> {
     known.map(|(_, ours)| format!("here it is written {ours}"))
 }
 
-fn did_you_mean(near: Option<String>) -> Option<String> {
-    near.map(|near| format!("did you mean `{near}`?"))
+/// The help that suggests a name.
+pub fn did_you_mean(near: &str) -> String {
+    format!("did you mean `{near}`?")
+}
+
+/// The help for an input of textures that is read where it is not declared.
+pub fn not_passed_on(node: &str, input: &str) -> String {
+    format!("nothing is passed on by itself: add `{input}` to the inputs of `{node}`")
 }
 
 /// A value that nobody declared.
 pub fn unknown_value(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0101", place, format!("there is no value `{name}` here"), "no such name")
-        .maybe_help(did_you_mean(near))
+        .maybe_help(near.map(|near| did_you_mean(&near)))
 }
 
 /// An alias that is missing: a file is imported, but its items joined ours.
@@ -73,7 +91,7 @@ pub fn missing_alias(place: Place, name: &str) -> Diagnostic {
 /// A node that nobody declared.
 pub fn unknown_callable(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0102", place, format!("there is no node `{name}`"), "no such node")
-        .maybe_help(foreign(name).or_else(|| did_you_mean(near)))
+        .maybe_help(foreign(name).or_else(|| near.map(|near| did_you_mean(&near))))
 }
 
 /// A name bound again in one body or file.
@@ -98,13 +116,14 @@ pub fn cycle(place: Place, names: &[&str]) -> Diagnostic {
 /// A field that a value does not have.
 pub fn unknown_field(place: Place, what: &str, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0105", place, format!("{what} has no field `{name}`"), "no such field")
-        .maybe_help(did_you_mean(near))
+        .maybe_help(near.map(|near| did_you_mean(&near)))
 }
 
 /// An assignment to something that is no output.
 pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0106", place, format!("`{node}` has no output `{name}`"), "not an output").maybe_help(
-        did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
+        near.map(|near| did_you_mean(&near))
+            .or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
     )
 }
 
@@ -112,7 +131,8 @@ pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>
 pub fn no_such_accumulator(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0106", place, format!("the fold has no accumulator `{name}`"), "not in its head")
         .maybe_help(
-            did_you_mean(near).or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
+            near.map(|near| did_you_mean(&near))
+                .or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
         )
 }
 

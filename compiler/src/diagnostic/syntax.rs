@@ -14,7 +14,11 @@ pub fn error(file: u32, error: &SyntaxError) -> Diagnostic {
         SyntaxErrorKind::Unexpected { found, expected, help: None } => mend(found, expected),
         _ => error.help(),
     };
-    Diagnostic::new(error.code(), place, error.message(), error.label()).maybe_help(help)
+    let diagnostic = Diagnostic::new(error.code(), place, error.message(), error.label()).maybe_help(help);
+    match error.related {
+        Some((span, label)) => diagnostic.related(Place { file, span }, label),
+        None => diagnostic,
+    }
 }
 
 /// A likely mend of a token that can't stand where it does.
@@ -22,6 +26,7 @@ fn mend(found: &str, expected: &[&str]) -> Option<String> {
     let wants = |what: &str| expected.contains(&what);
     let found = found.trim_matches('`');
     Some(match found {
+        _ if wants("`else`") && names::nearest(found, ["else"]).is_some() => names::did_you_mean("else"),
         _ if wants("an item") => {
             let near = names::nearest(found, ITEMS)?;
             format!("did you mean `{near}`?")

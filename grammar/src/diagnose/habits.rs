@@ -1,16 +1,47 @@
 //! Habits of other languages, and what is written here instead.
 
-use super::Place;
+use super::{Guess, Place};
+use crate::recover::{is_first_of_line, is_in_column_0};
+use crate::scan::TokenKind;
+
+/// Types as other languages write them before a name.
+const TYPES: [&str; 16] = [
+    "auto", "bool", "color", "double", "float", "half", "int", "ivec2", "ivec3", "ivec4", "mat2", "mat3",
+    "uint", "vec2", "vec3", "vec4",
+];
 
 impl Place<'_, '_> {
+    /// `#define`, `#include`
+    pub(super) fn preprocessor(&self) -> Guess {
+        let help = match self.text {
+            "#define" => "a constant is declared with `let`, and a function is a `node`",
+            "#include" | "#import" => "a file is imported with `use \"path.tex\"`",
+            "#if" | "#ifdef" | "#ifndef" | "#else" | "#elif" | "#endif" => {
+                "an `if` on a constant looks at one arm only"
+            }
+            "#version" | "#extension" | "#pragma" => "leave this line out",
+            _ => return None,
+        };
+        Some(self.found(self.expected.to_vec(), Some(help)))
+    }
+
+    /// `texture(image, uv)`
+    pub(super) fn is_called_texture(&self) -> bool {
+        self.text == "texture" && self.text_at(1) == "("
+    }
+
     /// Habits of other languages, and what is written here instead.
     pub(super) fn habit(&self) -> Option<&'static str> {
         let previous = self.text_at(-1);
         Some(match self.text {
+            _ if self.is_called_texture() && self.expects("an expression") => {
+                "an image is read with `image.sample(uv)`"
+            }
             ":" if self.expects("`=`") => "a value is assigned with `=`, and its type is inferred",
             "=>" | "==" | "::" | "+=" | "-=" | "*=" | "/=" if self.expects("`=`") => {
                 "a value is assigned once, with `=`"
             }
+            "++" | "--" => "nothing is counted up: in a fold the next value is assigned, `n = n + 1`",
             "=" if self.expects("`,`") => "an argument is named with `:`: `f(octaves: 6)`",
             "{" if self.expects("`->`") => "outputs stand behind `->`: `-> (value: float)`",
             _ if previous == "->" && self.expects("`(`") => "outputs have names: `-> (value: float)`",
@@ -19,15 +50,39 @@ impl Place<'_, '_> {
                 "the only loop is `fold (a = start) for i in 0..n { … }`"
             }
             "if" if self.expects("an assignment") => "`if` chooses a value: `x = if c { a } else { b }`",
-            "fn" | "func" | "function" | "def" if self.expects("an item") => {
+            "and" => "and is written `&&`",
+            "or" => "or is written `||`",
+            _ if previous == "not" => "not is written `!`",
+            "|" | "&" if self.expects("`,`") => "or is written `||`, and `&&`",
+            _ if self.expects("`=`") && self.is_name(0) && TYPES.contains(&previous) => {
+                "a wire begins with `let`, and its type is inferred: `let x = …`"
+            }
+            _ => return self.item_habit(),
+        })
+    }
+
+    /// The same for what stands where an item should.
+    fn item_habit(&self) -> Option<&'static str> {
+        if !self.expects("an item") {
+            return None;
+        }
+        let begins_line =
+            is_first_of_line(self.scan, self.index) && is_in_column_0(self.scan.source, self.token);
+        Some(match self.text {
+            "fn" | "func" | "function" | "def" | "void" => {
                 "a function is a `node`: `node f(x: float) -> (value: float) { value = x }`"
             }
-            "import" | "include" | "require" if self.expects("an item") => {
-                "a file is imported with `use \"path.tex\"`"
+            "import" | "include" | "require" => "a file is imported with `use \"path.tex\"`",
+            "const" | "var" => "a constant or a resource is declared with `let`",
+            "uniform" => "what a host sets is a `param`",
+            "material" | "shader" => "an entry point is a `texture`",
+            text if TYPES.contains(&text) && self.text_at(2) == "(" => {
+                "a function is a `node`: `node f(x: float) -> (value: float) { value = x }`"
             }
-            "const" | "var" if self.expects("an item") => "a constant or a resource is declared with `let`",
-            "uniform" if self.expects("an item") => "what a host sets is a `param`",
-            "|" | "&" if self.expects("`,`") => "or is written `||`, and `&&`",
+            text if TYPES.contains(&text) => "a constant or a resource is declared with `let`",
+            _ if begins_line && self.token.kind == TokenKind::Word && self.text_at(1) == "=" => {
+                "a constant or a resource is declared with `let`"
+            }
             _ => return None,
         })
     }

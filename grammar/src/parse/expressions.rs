@@ -62,7 +62,7 @@ impl<'s> Builder<'s> {
 
     fn forbid_chain(&mut self, operator: BinaryOperator, span: Span) {
         if operator.precedence() == BinaryOperator::Less.precedence() {
-            self.errors.push(SyntaxError { kind: SyntaxErrorKind::ChainedComparison, span });
+            self.errors.push(SyntaxError::new(SyntaxErrorKind::ChainedComparison, span));
         }
     }
 
@@ -145,7 +145,7 @@ impl<'s> Builder<'s> {
             let before = arguments.last().and_then(|before| before.name.as_ref());
             if let (None, Some(named)) = (&argument.name, before) {
                 let kind = SyntaxErrorKind::PositionalAfterNamed { named: named.text.clone() };
-                self.errors.push(SyntaxError { kind, span: argument.value.span });
+                self.errors.push(SyntaxError::new(kind, argument.value.span));
             }
             arguments.push(argument);
         }

@@ -180,7 +180,7 @@ impl<'s> Builder<'s> {
         let span = pair.span;
         let number = pair.text.parse().unwrap_or_else(|_| {
             let text = pair.text.to_string();
-            self.errors.push(SyntaxError { kind: SyntaxErrorKind::NumberTooLarge { text }, span });
+            self.errors.push(SyntaxError::new(SyntaxErrorKind::NumberTooLarge { text }, span));
             0
         });
         Ok(Dim::Number(number, span))

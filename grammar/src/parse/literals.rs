@@ -29,7 +29,7 @@ impl<'s> Builder<'s> {
         let value = digits.parse::<f64>().unwrap_or(f64::INFINITY) * unit;
         if !value.is_finite() {
             let kind = SyntaxErrorKind::NumberTooLarge { text: text.to_string() };
-            self.errors.push(SyntaxError { kind, span: pair.span });
+            self.errors.push(SyntaxError::new(kind, pair.span));
         }
         ExprKind::Float(value)
     }
@@ -48,10 +48,10 @@ impl<'s> Builder<'s> {
             let escape = rest.get(at..at + length).unwrap_or_default();
             match character {
                 Some(character) => value.push(character),
-                None => self.errors.push(SyntaxError {
-                    kind: SyntaxErrorKind::BadEscape { escape: escape.to_string() },
-                    span: Span::new(offset, offset + length),
-                }),
+                None => self.errors.push(SyntaxError::new(
+                    SyntaxErrorKind::BadEscape { escape: escape.to_string() },
+                    Span::new(offset, offset + length),
+                )),
             }
             rest = rest.get(at + length..).unwrap_or_default();
         }
