@@ -84,7 +84,7 @@ impl<'a> Checker<'a> {
         steps: &Steps,
     ) -> Option<Part> {
         let types = starts.iter().map(|start| f.builder.ty(*start)).collect::<Vec<Type>>();
-        f.enter(&format!("{}_step", f.current));
+        f.enter("step");
         let accumulators = accumulators(f, fold, &types);
         let plain = steps.are_places(f);
         let name = if plain { fold.variable.text.clone() } else { format!("{}_step", fold.variable.text) };
@@ -139,7 +139,7 @@ impl<'a> Checker<'a> {
     ) -> Option<Part> {
         let at = self.place(f, condition.span);
         let types = starts.iter().map(|start| f.builder.ty(*start)).collect::<Vec<Type>>();
-        f.enter(&format!("{}_goes_on", f.current));
+        f.enter("goes_on");
         accumulators(f, fold, &types);
         let level = f.layers.len() - 1;
         for capture in captures {

@@ -489,7 +489,12 @@ impl<'a> Checker<'a> {
                         views.push((field.name, f.builder.input(full, Type::View(view))));
                     }
                 }
-                Wire::Resource(Rc::new(ResourceWire { kind: *kind, id: None, views, constants: constants.clone() }))
+                Wire::Resource(Rc::new(ResourceWire {
+                    kind: *kind,
+                    id: None,
+                    views,
+                    constants: constants.clone(),
+                }))
             }
             ArgumentKey::Node(function) => self.node_input(f, input, *function),
             ArgumentKey::Word(word) => Wire::Word(word.clone(), Place::default()),
