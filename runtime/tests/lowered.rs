@@ -240,7 +240,8 @@ fn shaders_give_what_graphs_do(gpu: &Gpu, seed: u64) -> Result<(), Failed> {
     let program = Program { passes: vec![Pass { graph, wgsl }], manifest };
     let graph = &program.passes[0].graph;
     let request = Request { time: TIME, ..Request::new([SIDE, SIDE]) };
-    let mut scene = gpu.prepare(&program, &Tables::default(), 0).map_err(|error| format!("{seed}: {error}"))?;
+    let mut scene =
+        gpu.prepare(&program, &Tables::default(), 0).map_err(|error| format!("{seed}: {error}"))?;
     let picture = scene.render(&request, &|_| {}).map_err(|error| format!("{seed}: {error}"))?;
     for (i, pixel) in (0..SIDE * SIDE).zip(&picture.pixels) {
         let uv = [i % SIDE, i / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32);
