@@ -97,23 +97,39 @@ pub struct Names(Vec<Name>);
 /// What a placeholder stands for.
 struct Name {
     text: String,
-    /// It is another thing's name: the line that would declare it is left out.
-    alias: bool,
+    kind: Kind,
+}
+
+/// How a name is declared.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// As the writer declares it.
+    Plain,
+    /// Not at all: it is another thing's name.
+    Alias,
+    /// Where it is first stored to.
+    Stored,
 }
 
 impl Names {
     /// A placeholder for a final name.
     pub fn placeholder(&mut self, name: String) -> String {
-        self.push(Name { text: name, alias: false })
+        self.push(name, Kind::Plain)
     }
 
     /// A placeholder for what has a final name already, such as the value of a variable.
     pub fn alias(&mut self, name: String) -> String {
-        self.push(Name { text: name, alias: true })
+        self.push(name, Kind::Alias)
     }
 
-    fn push(&mut self, name: Name) -> String {
-        self.0.push(name);
+    /// A placeholder for a variable that is stored to in the block that all its uses are in, before
+    /// any of them: it is declared there.
+    pub fn stored(&mut self, name: String) -> String {
+        self.push(name, Kind::Stored)
+    }
+
+    fn push(&mut self, text: String, kind: Kind) -> String {
+        self.0.push(Name { text, kind });
         format!("z{}z", self.0.len() - 1)
     }
 
@@ -122,11 +138,17 @@ impl Names {
         self.0.get(number.parse::<usize>().ok()?)
     }
 
-    /// What follows the line whose `let` is followed by `after`, if that line declares an alias.
-    fn behind_alias<'t>(&self, after: &'t str) -> Option<&'t str> {
+    /// What follows the line that begins with `token` and goes on with `after`, if it declares
+    /// what is declared elsewhere.
+    fn behind_declaration<'t>(&self, token: &str, after: &'t str) -> Option<&'t str> {
+        let elsewhere = match token {
+            "let" => Kind::Alias,
+            "var" => Kind::Stored,
+            _ => return None,
+        };
         let (line, behind) = after.split_once('\n')?;
-        let (declared, _) = line.trim_start().split_once(' ')?;
-        self.get(declared).is_some_and(|name| name.alias).then_some(behind)
+        let declared = line.trim_start().split([' ', ':']).next()?;
+        self.get(declared).is_some_and(|name| name.kind == elsewhere).then_some(behind)
     }
 
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
@@ -135,23 +157,27 @@ impl Names {
         let mut out = String::with_capacity(text.len());
         let mut rest = text;
         let mut function = 0;
+        let mut stored = FxHashSet::default();
         while let Some(start) = rest.find(|c: char| c.is_ascii_alphabetic() || c == '_') {
             let (before, from) = rest.split_at(start);
             out.push_str(before);
             let end = from.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(from.len());
             let (token, after) = from.split_at(end);
             function += usize::from(token == "fn");
-            if token == "let"
-                && let Some(behind) = self.behind_alias(after)
-            {
+            if let Some(behind) = self.behind_declaration(token, after) {
                 out.truncate(out.trim_end_matches(' ').len());
-                rest = behind;
+                // The writer parts variables from the rest by an empty line.
+                rest = if out.ends_with("{\n") { behind.trim_start_matches('\n') } else { behind };
                 continue;
             }
             let result = token.strip_prefix("_e").and_then(|n| n.parse::<u32>().ok());
             let result =
                 result.and_then(|n| results.get(function.wrapping_sub(1))?.get(&n)).map(String::as_str);
-            out.push_str(self.get(token).map(|name| name.text.as_str()).or(result).unwrap_or(token));
+            let name = self.get(token);
+            if name.is_some_and(|name| name.kind == Kind::Stored) && stored.insert(token) {
+                out.push_str("var ");
+            }
+            out.push_str(name.map(|name| name.text.as_str()).or(result).unwrap_or(token));
             // A number's suffix or exponent is no name: skip what directly follows a digit.
             rest = after;
         }
@@ -195,5 +221,13 @@ mod tests {
         let next = names.placeholder("next".to_owned());
         let text = format!("{{\n    let {value} = {variable};\n    let {next} = {value} + 1;\n}}\n");
         assert_eq!(names.apply(&text, &[]), "{\n    let next = sum + 1;\n}\n");
+    }
+
+    #[test]
+    fn variables_are_declared_where_they_are_first_stored_to() {
+        let mut names = Names::default();
+        let sum = names.stored("sum".to_owned());
+        let text = format!("{{\n    var {sum}: f32;\n\n    {sum} = 1f;\n    {sum} = {sum} + 1f;\n}}\n");
+        assert_eq!(names.apply(&text, &[]), "{\n    var sum = 1f;\n    sum = sum + 1f;\n}\n");
     }
 }

@@ -36,8 +36,7 @@ impl Lowering<'_> {
         }
         let operation = frame.function.operation(value);
         let handle = self.operation(body, frame, value, operation);
-        frame.set(value, handle);
-        if let Some(wish) = frame.wish(value) {
+        if let Some(wish) = frame.set(value, handle) {
             body.name(&mut self.names, handle, &wish);
         }
     }
@@ -55,7 +54,7 @@ impl Lowering<'_> {
         body.statement(Statement::If { condition, accept, reject });
         for choice in choices {
             let chosen = body.load(&mut self.names, &choice.variable);
-            frame.set(choice.value, chosen);
+            frame.set_variable(choice.value, chosen);
         }
     }
 

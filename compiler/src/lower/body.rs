@@ -141,7 +141,28 @@ impl<'f> Body<'f> {
     /// A variable of that name, or one like it; not yet stored to.
     pub fn variable(&mut self, names: &mut Names, wish: &str, ty: Handle<naga::Type>) -> Variable {
         let name = self.scope.name(wish);
-        let variable = naga::LocalVariable { name: Some(names.placeholder(name.clone())), ty, init: None };
+        let placeholder = names.placeholder(name.clone());
+        self.declare(placeholder, name, ty)
+    }
+
+    /// A variable of that name, or one like it, that begins here and is read and stored to in this
+    /// block only, and the blocks in it.
+    pub fn begin(
+        &mut self,
+        names: &mut Names,
+        wish: &str,
+        ty: Handle<naga::Type>,
+        start: Handle<Expression>,
+    ) -> Variable {
+        let name = self.scope.name(wish);
+        let placeholder = names.stored(name.clone());
+        let variable = self.declare(placeholder, name, ty);
+        self.store(&variable, start);
+        variable
+    }
+
+    fn declare(&mut self, placeholder: String, name: String, ty: Handle<naga::Type>) -> Variable {
+        let variable = naga::LocalVariable { name: Some(placeholder), ty, init: None };
         Variable { handle: self.function.local_variables.append(variable, Span::UNDEFINED), name }
     }
 

@@ -1,7 +1,8 @@
 //! A fold as a loop, its condition and its step lowered in place.
 //!
 //! ```text
-//! sum = start; i = 0;
+//! var sum = start;
+//! var i = 0;
 //! loop {
 //!     if i >= steps { break; }
 //!     if !condition { break; }
@@ -73,10 +74,8 @@ impl Lowering<'_> {
         let mut variables = Vec::with_capacity(fold.starts.len());
         for ((slot, _), start) in step.outputs.iter().zip(&fold.starts) {
             let ty = self.types.get(&mut self.module.types, slot.ty);
-            let variable = body.variable(&mut self.names, &slot.name, ty);
             let start = self.operand(body, frame, *start);
-            body.store(&variable, start);
-            variables.push(variable);
+            variables.push(body.begin(&mut self.names, &slot.name, ty, start));
         }
         variables
     }
@@ -85,10 +84,8 @@ impl Lowering<'_> {
     fn counter(&mut self, body: &mut Body, step: &Function, fold: &Fold) -> Variable {
         let wish = step.inputs.get(fold.starts.len()).map_or("i", |slot| slot.name.as_str());
         let ty = self.types.get(&mut self.module.types, Type::INT);
-        let counter = body.variable(&mut self.names, wish, ty);
         let zero = body.literal(Literal::I32(0));
-        body.store(&counter, zero);
-        counter
+        body.begin(&mut self.names, wish, ty, zero)
     }
 
     /// How many steps are taken at most, an int. Known before the loop begins.

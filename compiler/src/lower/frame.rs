@@ -5,7 +5,7 @@ use super::fold::takes_all_steps;
 use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
-use crate::intrinsic::{MULTIPLY, MULTIPLY_INT};
+use crate::intrinsic::{Form, MULTIPLY, MULTIPLY_INT};
 use naga::{Expression, Handle};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
@@ -27,6 +27,8 @@ pub struct Frame<'g> {
     pub folds: FxHashMap<Value, Vec<Handle<Expression>>>,
     /// Choices that are made right in the variable of the choice around them.
     pub targets: FxHashMap<Value, Variable>,
+    /// What the author calls the first output of each call.
+    results: FxHashMap<Value, &'g str>,
     /// Inputs that are known numbers.
     known: FxHashMap<Value, Constant>,
     /// Of a fold's step: values that have the name of the accumulator they are the next of.
@@ -43,6 +45,7 @@ impl<'g> Frame<'g> {
             nest: vec![0; function.values.len()],
             folds: FxHashMap::default(),
             targets: FxHashMap::default(),
+            results: results(function),
             known: FxHashMap::default(),
             next: FxHashMap::default(),
         }
@@ -85,10 +88,6 @@ impl<'g> Frame<'g> {
         }
     }
 
-    pub fn set(&mut self, value: Value, handle: Handle<Expression>) {
-        self.values[value.0 as usize] = Some(handle);
-    }
-
     /// The number, if it is known.
     pub fn constant(&self, value: Value) -> Option<Constant> {
         match self.function.operation(value) {
@@ -112,27 +111,38 @@ impl<'g> Frame<'g> {
         self.nest[value.0 as usize] > 0
     }
 
-    /// Whether a lowered value is to be named, and how; notes how deep it nests otherwise.
-    pub fn wish(&mut self, value: Value) -> Option<String> {
+    /// Notes that a value is lowered; how to name it, if it is to be named.
+    pub fn set(&mut self, value: Value, handle: Handle<Expression>) -> Option<String> {
+        self.values[value.0 as usize] = Some(handle);
         let operation = self.function.operation(value);
+        if self.needs_no_name(operation, handle) {
+            return None;
+        }
         let mut nest = 0;
         operation.for_operands(|v| nest = nest.max(self.nest[v.0 as usize]));
         let nest = nest.saturating_add(1);
-        let author = self.author(value);
-        let uses = self.uses[value.0 as usize];
-        let named = !self.needs_no_name(operation)
-            && (author.is_some()
-                || is_eager(operation)
-                || nest >= MAX_NEST
-                || (!is_cheap(operation) && uses > 1));
-        self.nest[value.0 as usize] = if named || self.needs_no_name(operation) { 0 } else { nest };
-        named.then(|| self.name(value))
+        let shared = !is_cheap(operation) && self.uses[value.0 as usize] > 1;
+        if self.author(value).is_some() || is_eager(operation) || nest >= MAX_NEST || shared {
+            return Some(self.name(value));
+        }
+        self.nest[value.0 as usize] = nest;
+        None
+    }
+
+    /// Notes what a variable's value is.
+    pub fn set_variable(&mut self, value: Value, loaded: Handle<Expression>) {
+        self.values[value.0 as usize] = Some(loaded);
     }
 
     /// What the author calls a value.
     pub fn author(&self, value: Value) -> Option<&'g str> {
         let author = self.function.names.get(&value).map(String::as_str);
         author.filter(|_| !self.next.contains_key(&value))
+    }
+
+    /// What the author calls the first output of a call.
+    pub fn author_of_result(&self, call: Value) -> Option<&'g str> {
+        self.results.get(&call).copied()
     }
 
     /// What a value is called, if it has to have a name.
@@ -143,7 +153,7 @@ impl<'g> Frame<'g> {
     }
 
     /// Known, or held by a name or variable of its own.
-    fn needs_no_name(&self, operation: &Operation) -> bool {
+    fn needs_no_name(&self, operation: &Operation, handle: Handle<Expression>) -> bool {
         match operation {
             Operation::Constant(_)
             | Operation::Param(_)
@@ -151,7 +161,11 @@ impl<'g> Frame<'g> {
             | Operation::Input(_)
             | Operation::Call(..)
             | Operation::Fold(_) => true,
-            Operation::Output(of, _) => matches!(self.function.operation(*of), Operation::Fold(_)),
+            // A call's only output is the call's result.
+            Operation::Output(of, _) => {
+                matches!(self.function.operation(*of), Operation::Fold(_)) || self.get(*of) == handle
+            }
+            Operation::Builtin(intrinsic, _) => matches!(intrinsic.row().form, Form::Helper(_)),
             _ => false,
         }
     }
@@ -163,6 +177,16 @@ pub struct Argument {
     pub handle: Handle<Expression>,
     /// The number, if it is known.
     pub known: Option<Constant>,
+}
+
+/// The names of calls' first outputs, by call.
+fn results(function: &Function) -> FxHashMap<Value, &str> {
+    let named = function.names.iter();
+    let outputs = named.filter_map(|(value, name)| match function.operation(*value) {
+        Operation::Output(call, 0) => Some((*call, name.as_str())),
+        _ => None,
+    });
+    outputs.collect()
 }
 
 /// Written again at each use rather than named.

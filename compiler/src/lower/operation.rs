@@ -4,7 +4,7 @@ use super::Lowering;
 use super::body::Body;
 use super::frame::{Frame, Splat, has_sampler, splat_of};
 use super::types::{numeric, scalar, size};
-use crate::graph::{Axis, Constant, FunctionId, Level, Operation, Scalar, Type, Value};
+use crate::graph::{Axis, Constant, FunctionId, Level, Operation, Scalar, Slot, Type, Value};
 use crate::intrinsic::{Form, Intrinsic, MULTIPLY, MULTIPLY_INT};
 use naga::{BinaryOperator, Expression, Handle, Literal, MathFunction, ScalarKind, SwizzleComponent};
 
@@ -21,7 +21,9 @@ impl Lowering<'_> {
             Operation::Input(_) => frame.get(value),
             Operation::Param(id) => body.params[id],
             Operation::View(id) => body.views[id],
-            Operation::Builtin(intrinsic, arguments) => self.builtin(body, frame, *intrinsic, arguments),
+            Operation::Builtin(intrinsic, arguments) => {
+                self.builtin(body, frame, value, *intrinsic, arguments)
+            }
             Operation::Compose(parts) => self.compose(body, frame, value, parts),
             Operation::Extract(vector, i) => {
                 let base = self.operand(body, frame, *vector);
@@ -214,26 +216,17 @@ impl Lowering<'_> {
             push(body.views[id], Type::View(self.graph.views[id.0 as usize].view));
         }
         let callee = self.callee(callee);
-        let author = if callee.is_struct { None } else { self.author_of(frame, value) };
-        let wish = author.unwrap_or_else(|| format!("{}_of", callee.name.trim_start_matches('_')));
+        let author = frame.author_of_result(value).filter(|_| !callee.is_struct);
+        let wish =
+            author.map_or_else(|| format!("{}_of", callee.name.trim_start_matches('_')), str::to_owned);
         body.call(callee.handle, all, &wish)
-    }
-
-    /// What the author calls the only output of a call.
-    fn author_of(&self, frame: &Frame, call: Value) -> Option<String> {
-        let output = Operation::Output(call, 0);
-        frame
-            .function
-            .names
-            .iter()
-            .find(|(v, _)| *frame.function.operation(**v) == output)
-            .map(|(_, name)| name.clone())
     }
 
     fn builtin(
         &mut self,
         body: &mut Body,
         frame: &mut Frame,
+        value: Value,
         intrinsic: Intrinsic,
         arguments: &[Value],
     ) -> Handle<Expression> {
@@ -272,7 +265,7 @@ impl Lowering<'_> {
             }),
             Form::Helper(helper) => {
                 let function = self.helper(helper);
-                body.call(function, operands, "random")
+                body.call(function, operands, frame.author(value).unwrap_or("random"))
             }
             Form::Expand(_) => unreachable!("expanded before lowering"),
         }
@@ -346,15 +339,18 @@ impl Lowering<'_> {
         body.binary(op, operands[0], count)
     }
 
-    /// A float as a colour of four: what the complete form writes.
+    /// An output as a colour of four: what the complete form writes.
     pub(super) fn widened(
         &mut self,
         body: &mut Body,
-        value: Handle<Expression>,
-        ty: Type,
+        mut value: Handle<Expression>,
+        slot: &Slot,
     ) -> Handle<Expression> {
-        let width = ty.width();
-        let value = if ty.is_float() { value } else { body.convert(value, ScalarKind::Float) };
+        let width = slot.ty.width();
+        if !slot.ty.is_float() {
+            value = body.convert(value, ScalarKind::Float);
+            body.name(&mut self.names, value, &slot.name);
+        }
         if width == 4 {
             return value;
         }

@@ -193,7 +193,7 @@ impl Lowering<'_> {
                 } else {
                     value
                 };
-                self.widened(&mut body, value, slot.ty)
+                self.widened(&mut body, value, slot)
             })
             .collect();
         let value = match outputs.as_slice() {
