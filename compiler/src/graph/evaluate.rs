@@ -1,12 +1,16 @@
 //! Runs a function over known numbers.
 //!
-//! Call by need: only what the outputs really need is evaluated, so of a choice only the arm that
-//! is taken, of a call only the arguments and outputs that are read, of a fold only the
-//! accumulators that matter; an operation that is not needed may be anything. A stack of demands
-//! stands for recursion, so calls and folds of any depth are fine.
+//! Only what the outputs need is evaluated, of a choice only the arm that is taken; an operation
+//! that is not needed may be anything. What is no number (a sample, say) is carried along as
+//! unknown, so an argument or an accumulator that turns out not to matter does no harm.
+//!
+//! A stack of activations stands for recursion, so calls and folds of any depth are fine. No
+//! function calls itself, and arguments are evaluated before a call: of each function one
+//! activation runs at a time, and the memory of its values is used again by the next.
 
 use super::{Constant, Fold, Function, FunctionId, Operation, Value};
 use rustc_hash::FxHashMap;
+use std::rc::Rc;
 
 /// Why there is no result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,8 +24,9 @@ pub enum Stopped {
 /// The outputs of a function of `functions` for known inputs, in order.
 ///
 /// One unit of `budget` is taken for each operation evaluated, those inside calls and folds
-/// included, and one for each step of a fold and each test before one. Constants, inputs and
-/// outputs of calls are free; what is read twice counts once.
+/// included; a call counts once for each argument, a step of a fold once for each accumulator, and
+/// each of them and each test before a step at least once. Constants, inputs and outputs of calls
+/// are free; what is read twice counts once.
 ///
 /// # Errors
 /// The outputs need something that is not a number, or the budget is used up.
@@ -31,273 +36,325 @@ pub fn evaluate(
     arguments: &[Constant],
     budget: &mut u64,
 ) -> Result<Vec<Constant>, Stopped> {
-    let function = functions.get(id.0 as usize).ok_or(Stopped::NotConstant)?;
     let mut machine = Machine {
         functions,
-        activations: vec![Activation { function, entered: Entered::Start(arguments) }],
-        known: FxHashMap::default(),
-        calls: FxHashMap::default(),
-        folds: FxHashMap::default(),
+        memories: Vec::new(),
+        places: FxHashMap::default(),
+        activations: Vec::new(),
+        demands: Vec::new(),
         budget,
     };
-    function.outputs.iter().map(|(_, value)| machine.number((0, *value))).collect()
+    machine.enter(id, Inputs::Arguments(arguments.iter().copied().map(Some).collect()))?;
+    let outputs = machine.run()?;
+    outputs.iter().map(|number| number.ok_or(Stopped::NotConstant)).collect()
 }
 
-/// A value of an activation.
-type Demand = (usize, Value);
+/// A number, if it is one.
+type Number = Option<Constant>;
 
-/// A function in execution: its values have one meaning each.
-#[derive(Clone, Copy)]
+/// What is known of a value.
+#[derive(Clone)]
+enum State {
+    Number(Number),
+    /// The outputs of a call, the accumulators of a fold.
+    Outputs(Rc<[Number]>),
+}
+
+/// What is known of the values of a function.
+#[derive(Default)]
+struct Memory {
+    /// Each state with the activation that it was known in: those of earlier ones are void.
+    states: Vec<(u64, State)>,
+    activation: u64,
+}
+
+/// A function in execution.
 struct Activation<'a> {
     function: &'a Function,
-    entered: Entered<'a>,
+    /// Its memory.
+    memory: usize,
+    inputs: Inputs,
+    /// Where its demands begin.
+    base: usize,
+    /// The fold that is running, if the last demand is one.
+    running: Option<Running<'a>>,
 }
 
-/// How an activation came to be: where its inputs come from.
-#[derive(Clone, Copy)]
-enum Entered<'a> {
-    /// From outside.
-    Start(&'a [Constant]),
-    /// By a call in another activation.
-    Call(usize, &'a [Value]),
-    /// As a step of a fold, or as the test before one.
-    Step(Step<'a>),
+/// What an activation was given.
+enum Inputs {
+    /// By a call.
+    Arguments(Rc<[Number]>),
+    /// By a fold: the accumulators, the number of the step (a test is not told), the captures.
+    Step(Rc<[Number]>, Option<u32>, Rc<[Number]>),
 }
 
-#[derive(Clone, Copy)]
-struct Step<'a> {
-    /// The activation that the fold stands in.
-    outer: usize,
+impl Inputs {
+    fn get(&self, i: usize) -> Number {
+        match self {
+            Inputs::Arguments(arguments) => arguments.get(i).copied().flatten(),
+            Inputs::Step(accumulators, number, captures) => {
+                let Some(behind) = i.checked_sub(accumulators.len()) else { return accumulators[i] };
+                match (number, behind) {
+                    (Some(number), 0) => Some(Constant::ints(&[*number as i32])),
+                    (Some(_), _) => captures.get(behind - 1).copied().flatten(),
+                    (None, _) => captures.get(behind).copied().flatten(),
+                }
+            }
+        }
+    }
+}
+
+/// A fold between two steps.
+struct Running<'a> {
     fold: &'a Fold,
-    /// The step before; the accumulators are the starts when none.
-    previous: Option<usize>,
-    /// Which step; none for a test, which is not told.
-    number: Option<u32>,
-}
-
-/// What an input is.
-enum Source {
-    Number(Constant),
-    Value(Demand),
-}
-
-/// How far a fold has come.
-#[derive(Clone, Copy, Default)]
-struct Progress {
     taken: u32,
-    last: Option<usize>,
-    /// The test before the next step.
-    test: Option<usize>,
-    done: bool,
+    steps: u32,
+    testing: bool,
+    accumulators: Rc<[Number]>,
+    captures: Rc<[Number]>,
 }
 
 struct Machine<'a, 'b> {
     functions: &'a [Function],
+    memories: Vec<Memory>,
+    /// Which memory a function has.
+    places: FxHashMap<FunctionId, usize>,
     activations: Vec<Activation<'a>>,
-    known: FxHashMap<Demand, Constant>,
-    /// The activation behind a call.
-    calls: FxHashMap<Demand, usize>,
-    folds: FxHashMap<Demand, Progress>,
+    /// The values that all activations wait for; the last is looked at next.
+    demands: Vec<Value>,
     budget: &'b mut u64,
 }
 
-/// What is to be done next for a demand.
-enum Next {
-    /// It is this number.
-    Is(Constant),
-    /// It waits for another.
-    Needs(Demand),
-    /// It has no number of its own, and is done: a fold.
-    Done,
-}
-
 impl<'a> Machine<'a, '_> {
-    /// The number behind a demand.
-    fn number(&mut self, demand: Demand) -> Result<Constant, Stopped> {
-        let mut stack = vec![demand];
-        while let Some(top) = stack.last() {
-            match self.next(*top)? {
-                Next::Is(number) => {
-                    self.known.insert(*top, number);
-                    stack.pop();
+    /// Runs until the first activation is done; its outputs.
+    fn run(&mut self) -> Result<Rc<[Number]>, Stopped> {
+        loop {
+            let Some(top) = self.activations.last() else { return Err(Stopped::NotConstant) };
+            match self.demands.last().copied().filter(|_| self.demands.len() > top.base) {
+                Some(value) if self.state(value).is_some() => {
+                    self.demands.pop();
                 }
-                Next::Needs(other) => stack.push(other),
-                Next::Done => {
-                    stack.pop();
+                Some(value) => self.advance(value)?,
+                None => {
+                    let outputs = top.function.outputs.iter().map(|(_, value)| self.number(*value)).collect();
+                    self.activations.pop();
+                    if self.activations.is_empty() {
+                        return Ok(outputs);
+                    }
+                    self.deliver(outputs)?;
                 }
             }
         }
-        self.known.get(&demand).copied().ok_or(Stopped::NotConstant)
     }
 
-    fn next(&mut self, demand: Demand) -> Result<Next, Stopped> {
-        if let Some(number) = self.known.get(&demand) {
-            return Ok(Next::Is(*number));
+    fn pay(&mut self, units: usize) -> Result<(), Stopped> {
+        *self.budget = self.budget.checked_sub(units.max(1) as u64).ok_or(Stopped::Budget)?;
+        Ok(())
+    }
+
+    /// Begins an activation: it waits for all outputs of the function.
+    fn enter(&mut self, id: FunctionId, inputs: Inputs) -> Result<(), Stopped> {
+        let function = self.functions.get(id.0 as usize).ok_or(Stopped::NotConstant)?;
+        let next = self.memories.len();
+        let memory = *self.places.entry(id).or_insert(next);
+        if memory == next {
+            let unknown = (0, State::Number(None));
+            self.memories.push(Memory { states: vec![unknown; function.values.len()], activation: 0 });
         }
-        let at = demand.0;
-        match self.operation(demand)? {
-            Operation::Constant(number) => Ok(Next::Is(*number)),
-            Operation::Input(i) => self.input(at, *i as usize),
-            Operation::Output(of, i) => self.output(at, *of, *i as usize),
-            Operation::Fold(fold) => self.fold(demand, fold),
-            Operation::Select(condition, yes, no) => match self.known.get(&(at, *condition)) {
-                Some(condition) => {
-                    let chosen = (at, if condition.bool(0) { *yes } else { *no });
-                    self.forward(chosen, true)
-                }
-                None => Ok(Next::Needs((at, *condition))),
-            },
-            operation @ (Operation::Builtin(..)
+        self.memories[memory].activation += 1;
+        let base = self.demands.len();
+        self.demands.extend(function.outputs.iter().rev().map(|(_, value)| *value));
+        self.activations.push(Activation { function, memory, inputs, base, running: None });
+        Ok(())
+    }
+
+    /// What the last activation knows of a value.
+    fn state(&self, value: Value) -> Option<&State> {
+        let memory = &self.memories[self.activations.last()?.memory];
+        let (activation, state) = memory.states.get(value.0 as usize)?;
+        (*activation == memory.activation).then_some(state)
+    }
+
+    /// The number of a value that the last activation knows.
+    fn number(&self, value: Value) -> Number {
+        match self.state(value) {
+            Some(State::Number(number)) => *number,
+            _ => None,
+        }
+    }
+
+    fn numbers(&self, values: &[Value]) -> Rc<[Number]> {
+        values.iter().map(|value| self.number(*value)).collect()
+    }
+
+    /// The value that the last activation looks at is this.
+    fn know(&mut self, state: State) {
+        if let (Some(value), Some(top)) = (self.demands.pop(), self.activations.last()) {
+            let memory = &mut self.memories[top.memory];
+            if let Some(slot) = memory.states.get_mut(value.0 as usize) {
+                *slot = (memory.activation, state);
+            }
+        }
+    }
+
+    /// Whether all operands are known; those that are not are waited for.
+    fn has_operands(&mut self, operation: &Operation) -> bool {
+        let before = self.demands.len();
+        operation.for_operands(|v| {
+            if self.state(v).is_none() {
+                self.demands.push(v);
+            }
+        });
+        self.demands.len() == before
+    }
+
+    /// Does what can be done for a value that is not known.
+    fn advance(&mut self, value: Value) -> Result<(), Stopped> {
+        let Some(top) = self.activations.last() else { return Ok(()) };
+        let Some(operation) = top.function.values.get(value.0 as usize) else {
+            return Err(Stopped::NotConstant);
+        };
+        match operation {
+            Operation::Constant(number) => self.know(State::Number(Some(*number))),
+            Operation::Input(i) => {
+                let number = top.inputs.get(*i as usize);
+                self.know(State::Number(number));
+            }
+            Operation::Select(condition, yes, no) => self.select(*condition, *yes, *no)?,
+            Operation::Builtin(..)
             | Operation::Compose(_)
             | Operation::Extract(..)
-            | Operation::Lookup(..)) => self.strict(at, operation),
+            | Operation::Lookup(..)
+            | Operation::Output(..)
+            | Operation::Call(..)
+            | Operation::Fold(_) => {
+                if self.has_operands(operation) {
+                    self.apply(operation)?;
+                }
+            }
             Operation::Param(_)
             | Operation::View(_)
             | Operation::Sample { .. }
             | Operation::Texel { .. }
             | Operation::Size(_)
-            | Operation::Call(..)
-            | Operation::Derivative(..) => Err(Stopped::NotConstant),
+            | Operation::Derivative(..) => self.know(State::Number(None)),
         }
-    }
-
-    fn operation(&self, (at, value): Demand) -> Result<&'a Operation, Stopped> {
-        self.activations[at].function.values.get(value.0 as usize).ok_or(Stopped::NotConstant)
-    }
-
-    fn pay(&mut self) -> Result<(), Stopped> {
-        *self.budget = self.budget.checked_sub(1).ok_or(Stopped::Budget)?;
         Ok(())
     }
 
-    /// What is the same as another value.
-    fn forward(&mut self, other: Demand, counts: bool) -> Result<Next, Stopped> {
-        let Some(number) = self.known.get(&other).copied() else { return Ok(Next::Needs(other)) };
-        if counts {
-            self.pay()?;
+    fn select(&mut self, condition: Value, yes: Value, no: Value) -> Result<(), Stopped> {
+        if self.state(condition).is_none() {
+            self.demands.push(condition);
+            return Ok(());
         }
-        Ok(Next::Is(number))
-    }
-
-    /// What needs all of its operands.
-    fn strict(&mut self, at: usize, operation: &Operation) -> Result<Next, Stopped> {
-        let mut numbers = Vec::new();
-        let mut missing = None;
-        operation.for_operands(|v| match self.known.get(&(at, v)) {
-            Some(number) => numbers.push(*number),
-            None => missing = Some((at, v)),
-        });
-        if let Some(missing) = missing {
-            return Ok(Next::Needs(missing));
-        }
-        self.pay()?;
-        applied(operation, &numbers).map(Next::Is).ok_or(Stopped::NotConstant)
-    }
-
-    fn input(&mut self, at: usize, i: usize) -> Result<Next, Stopped> {
-        let source = match self.activations[at].entered {
-            Entered::Start(arguments) => arguments.get(i).copied().map(Source::Number),
-            Entered::Call(caller, arguments) => arguments.get(i).map(|v| Source::Value((caller, *v))),
-            Entered::Step(step) => self.step_input(step, i),
+        let Some(holds) = self.number(condition) else {
+            self.know(State::Number(None));
+            return Ok(());
         };
-        match source.ok_or(Stopped::NotConstant)? {
-            Source::Number(number) => Ok(Next::Is(number)),
-            Source::Value(other) => self.forward(other, false),
-        }
-    }
-
-    /// The accumulators, the number of the step (for a step, not for a test), the captures.
-    fn step_input(&self, step: Step<'a>, i: usize) -> Option<Source> {
-        let Some(behind) = i.checked_sub(step.fold.starts.len()) else {
-            return self.accumulator(step.outer, step.fold, step.previous, i).map(Source::Value);
-        };
-        let capture = match (step.number, behind) {
-            (Some(number), 0) => return Some(Source::Number(Constant::ints(&[number as i32]))),
-            (Some(_), _) => behind - 1,
-            (None, _) => behind,
-        };
-        step.fold.captures.get(capture).map(|v| Source::Value((step.outer, *v)))
-    }
-
-    /// Accumulator `i` after a step, or before the first.
-    fn accumulator(&self, outer: usize, fold: &Fold, after: Option<usize>, i: usize) -> Option<Demand> {
-        match after {
-            Some(step) => self.activations[step].function.outputs.get(i).map(|(_, value)| (step, *value)),
-            None => fold.starts.get(i).map(|start| (outer, *start)),
-        }
-    }
-
-    fn output(&mut self, at: usize, of: Value, i: usize) -> Result<Next, Stopped> {
-        let inner = match self.operation((at, of))? {
-            Operation::Call(callee, arguments) => {
-                let callee = self.call((at, of), *callee, arguments)?;
-                self.activations[callee].function.outputs.get(i).map(|(_, value)| (callee, *value))
+        let chosen = if holds.bool(0) { yes } else { no };
+        match self.state(chosen).cloned() {
+            Some(state) => {
+                self.pay(1)?;
+                self.know(state);
             }
-            Operation::Fold(fold) => match self.folds.get(&(at, of)) {
-                Some(Progress { done: true, last, .. }) => self.accumulator(at, fold, *last, i),
-                _ => return Ok(Next::Needs((at, of))),
-            },
-            _ => None,
-        };
-        self.forward(inner.ok_or(Stopped::NotConstant)?, false)
-    }
-
-    /// The activation behind a call.
-    fn call(&mut self, call: Demand, callee: FunctionId, arguments: &'a [Value]) -> Result<usize, Stopped> {
-        if let Some(entered) = self.calls.get(&call) {
-            return Ok(*entered);
+            None => self.demands.push(chosen),
         }
-        let entered = self.enter(callee, Entered::Call(call.0, arguments))?;
-        self.calls.insert(call, entered);
-        Ok(entered)
+        Ok(())
     }
 
-    fn enter(&mut self, id: FunctionId, entered: Entered<'a>) -> Result<usize, Stopped> {
-        self.pay()?;
-        let function = self.functions.get(id.0 as usize).ok_or(Stopped::NotConstant)?;
-        self.activations.push(Activation { function, entered });
-        Ok(self.activations.len() - 1)
+    /// An operation whose operands are known.
+    fn apply(&mut self, operation: &'a Operation) -> Result<(), Stopped> {
+        match operation {
+            Operation::Output(of, i) => {
+                let number = match self.state(*of) {
+                    Some(State::Outputs(outputs)) => outputs.get(*i as usize).copied().flatten(),
+                    _ => None,
+                };
+                self.know(State::Number(number));
+            }
+            Operation::Call(callee, arguments) => {
+                self.pay(arguments.len())?;
+                self.enter(*callee, Inputs::Arguments(self.numbers(arguments)))?;
+            }
+            Operation::Fold(fold) => self.begin(fold)?,
+            _ => {
+                let mut numbers = Some(Vec::new());
+                operation.for_operands(|v| {
+                    numbers = numbers.take().zip(self.number(v)).map(|(mut numbers, number)| {
+                        numbers.push(number);
+                        numbers
+                    });
+                });
+                if numbers.is_some() {
+                    self.pay(1)?;
+                }
+                self.know(State::Number(numbers.and_then(|numbers| applied(operation, &numbers))));
+            }
+        }
+        Ok(())
     }
 
-    /// Takes the steps of a fold, as far as its tests are known.
-    fn fold(&mut self, demand: Demand, fold: &'a Fold) -> Result<Next, Stopped> {
-        let outer = demand.0;
-        let Some(steps) = self.known.get(&(outer, fold.steps)) else {
-            return Ok(Next::Needs((outer, fold.steps)));
+    /// Begins a fold.
+    fn begin(&mut self, fold: &'a Fold) -> Result<(), Stopped> {
+        let Some(steps) = self.number(fold.steps) else {
+            self.know(State::Number(None));
+            return Ok(());
         };
         let steps = u32::try_from(steps.int(0)).unwrap_or(0).min(fold.most);
-        let mut progress = self.folds.get(&demand).copied().unwrap_or_default();
-        while progress.taken < steps {
-            let step = Step { outer, fold, previous: progress.last, number: None };
-            match self.test(step, &mut progress)? {
-                Next::Is(holds) if holds.bool(0) => {}
-                Next::Needs(other) => {
-                    self.folds.insert(demand, progress);
-                    return Ok(Next::Needs(other));
-                }
-                _ => break,
-            }
-            let step = Step { number: Some(progress.taken), ..step };
-            progress = Progress {
-                taken: progress.taken + 1,
-                last: Some(self.enter(fold.body, Entered::Step(step))?),
-                ..Progress::default()
-            };
-        }
-        self.folds.insert(demand, Progress { done: true, ..progress });
-        Ok(Next::Done)
+        let (accumulators, captures) = (self.numbers(&fold.starts), self.numbers(&fold.captures));
+        self.go_on(Running { fold, taken: 0, steps, testing: false, accumulators, captures })
     }
 
-    /// Whether a step is to be taken.
-    fn test(&mut self, step: Step<'a>, progress: &mut Progress) -> Result<Next, Stopped> {
-        let Some(condition) = step.fold.condition else { return Ok(Next::Is(Constant::bools(&[true]))) };
-        let test = match progress.test {
-            Some(test) => test,
-            None => self.enter(condition, Entered::Step(step))?,
+    /// Begins the next step of a fold, or the test before it, or ends the fold.
+    fn go_on(&mut self, running: Running<'a>) -> Result<(), Stopped> {
+        if running.taken == running.steps {
+            self.know(State::Outputs(running.accumulators));
+            return Ok(());
+        }
+        match running.fold.condition {
+            Some(condition) => {
+                self.pay(1)?;
+                self.part(condition, None, Running { testing: true, ..running })
+            }
+            None => self.step(running),
+        }
+    }
+
+    fn step(&mut self, running: Running<'a>) -> Result<(), Stopped> {
+        self.pay(running.accumulators.len())?;
+        self.part(running.fold.body, Some(running.taken), running)
+    }
+
+    /// Enters the body or the condition of a fold.
+    fn part(&mut self, id: FunctionId, number: Option<u32>, running: Running<'a>) -> Result<(), Stopped> {
+        let inputs = Inputs::Step(Rc::clone(&running.accumulators), number, Rc::clone(&running.captures));
+        if let Some(top) = self.activations.last_mut() {
+            top.running = Some(running);
+        }
+        self.enter(id, inputs)
+    }
+
+    /// What was entered last gives these.
+    fn deliver(&mut self, outputs: Rc<[Number]>) -> Result<(), Stopped> {
+        let running = self.activations.last_mut().and_then(|top| top.running.take());
+        let Some(running) = running else {
+            self.know(State::Outputs(outputs));
+            return Ok(());
         };
-        progress.test = Some(test);
-        let (_, holds) = self.activations[test].function.outputs.first().ok_or(Stopped::NotConstant)?;
-        self.forward((test, *holds), false)
+        if running.testing {
+            match outputs.first().copied().flatten() {
+                Some(holds) if holds.bool(0) => return self.step(Running { testing: false, ..running }),
+                Some(_) => self.know(State::Outputs(running.accumulators)),
+                None => self.know(State::Number(None)),
+            }
+            return Ok(());
+        }
+        // What has lost all its numbers will hardly find one again.
+        if outputs.iter().all(Option::is_none) {
+            self.know(State::Outputs(outputs));
+            return Ok(());
+        }
+        self.go_on(Running { taken: running.taken + 1, accumulators: outputs, ..running })
     }
 }
 
@@ -403,10 +460,10 @@ mod tests {
     #[test]
     fn the_budget_is_the_number_of_operations() {
         let functions = [body(), folding(None, 100)];
-        // Five steps of two operations each.
-        let (result, used) = run(&functions, &[int(5), int(3)], 15);
-        assert_eq!((result.is_ok(), used), (true, 15));
-        assert_eq!(run(&functions, &[int(5), int(3)], 14).0, Err(Stopped::Budget));
+        // Five steps of two operations and two accumulators each.
+        let (result, used) = run(&functions, &[int(5), int(3)], 20);
+        assert_eq!((result.is_ok(), used), (true, 20));
+        assert_eq!(run(&functions, &[int(5), int(3)], 19).0, Err(Stopped::Budget));
     }
 
     #[test]
@@ -439,6 +496,62 @@ mod tests {
         let total = b.fold(fold)[0];
         b.output("total", total);
         assert_eq!(run(&[body(), b.finish()], &[], 99).0, Ok(vec![int(6)]));
+    }
+
+    #[test]
+    fn a_fold_that_tests_or_counts_something_unknown_has_no_result() {
+        for unknown in ["steps", "condition"] {
+            let mut b = Builder::new("caller");
+            let param = b.push(Operation::Param(ParamId(0)), Type::INT);
+            let (steps, start) = (b.constant(int(4)), b.constant(int(0)));
+            let fold = Fold {
+                body: FunctionId(0),
+                condition: Some(FunctionId(1)),
+                starts: vec![start, if unknown == "condition" { param } else { start }],
+                steps: if unknown == "steps" { param } else { steps },
+                most: 4,
+                captures: vec![start],
+            };
+            let total = b.fold(fold)[0];
+            b.output("total", total);
+            assert_eq!(run(&[body(), condition(), b.finish()], &[], 99).0, Err(Stopped::NotConstant));
+        }
+    }
+
+    #[test]
+    fn a_fold_of_samples_stops_at_once() {
+        let mut b = Builder::new("body");
+        let sum = b.input("sum", Type::INT);
+        b.input("step", Type::INT);
+        let param = b.push(Operation::Param(ParamId(0)), Type::INT);
+        let sum = b.builtin(ADD_INT, &[sum, param]);
+        b.output("sum", sum);
+        let body = b.finish();
+        let mut b = Builder::new("caller");
+        let (steps, start) = (b.constant(int(60_000)), b.constant(int(0)));
+        let fold = Fold {
+            body: FunctionId(0),
+            condition: None,
+            starts: vec![start],
+            steps,
+            most: 60_000,
+            captures: Vec::new(),
+        };
+        let sum = b.fold(fold)[0];
+        b.output("sum", sum);
+        let (result, used) = run(&[body, b.finish()], &[], 1000);
+        assert_eq!((result, used), (Err(Stopped::NotConstant), 1));
+    }
+
+    #[test]
+    fn a_call_of_a_call_of_the_same_function() {
+        let mut b = Builder::new("caller");
+        let mut x = b.input("x", Type::INT);
+        for _ in 0..1000 {
+            x = b.call(FunctionId(0), &successor(), vec![x])[0];
+        }
+        b.output("x", x);
+        assert_eq!(run(&[successor(), b.finish()], &[int(5)], 2000), (Ok(vec![int(1005)]), 2000));
     }
 
     #[test]
