@@ -153,14 +153,7 @@ impl Report {
 
 /// A sentence as a diagnostic without a code.
 fn without_code(text: &str) -> Diagnostic {
-    Diagnostic {
-        code: "",
-        message: text.to_owned(),
-        place: Place::default(),
-        label: String::new(),
-        related: Vec::new(),
-        help: None,
-    }
+    Diagnostic::new("", Place::default(), text, "")
 }
 
 /// Colours are for terminals, and for people who want them (<https://no-color.org>).

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
+use texgraph_compiler::Diagnostic;
 use texgraph_compiler::module::Loader;
 use texgraph_compiler::{Compiled, Failure, Library, Options, check, compile};
 use texgraph_runtime::{project::Project, resource};
@@ -15,16 +16,16 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/errors")
 }
 
-/// Files of a folder; the texts of memory before them.
+/// Files of a folder; the text in memory before that of the file of its name.
 struct Folder {
     path: PathBuf,
-    main: Option<String>,
+    main: Option<(String, String)>,
 }
 
 impl Loader for Folder {
     fn load(&self, path: &str) -> Result<String, String> {
         match &self.main {
-            Some(text) if path == "main.tex" => Ok(text.clone()),
+            Some((name, text)) if path == name => Ok(text.clone()),
             _ => fs::read_to_string(self.path.join(path)).map_err(|_| "there is no such file".to_owned()),
         }
     }
@@ -98,6 +99,13 @@ impl Case {
         Some(codes.split(',').map(str::trim).collect())
     }
 
+    /// What is said about the file with another text in its place.
+    pub fn errors_of_text(&self, text: &str) -> Vec<Diagnostic> {
+        let loader =
+            Folder { path: self.folder(), main: Some((format!("{}.tex", self.name), text.to_owned())) };
+        check(&LIBRARY, &format!("{}.tex", self.path()), &loader).err().map_or(Vec::new(), |e| e.diagnostics)
+    }
+
     /// What is said about the file.
     pub fn errors(&self) -> Failure {
         let loader = Folder { path: self.folder(), main: None };
@@ -132,7 +140,8 @@ fn asked(wish: &str) -> Options {
 
 /// Checks a text that may import what the files about imports do.
 pub fn errors_of(text: &str) -> Result<(), Failure> {
-    let loader = Folder { path: root().join("imports"), main: Some(text.to_owned()) };
+    let loader =
+        Folder { path: root().join("imports"), main: Some(("main.tex".to_owned(), text.to_owned())) };
     check(&LIBRARY, "main.tex", &loader).map(drop)
 }
 

@@ -59,7 +59,9 @@ fn unknown_value(texts: &Texts, names: &Names, diagnostic: &mut Diagnostic, text
     let unread = unread.filter(|_| near.is_none_or(|near| near.reads > 0));
     let mut related = Vec::new();
     if let Some(near) = near {
-        diagnostic.help = Some(sentences::did_you_mean(&near.name.text));
+        if diagnostic.help.is_none() || diagnostic.suggestion.is_some() {
+            diagnostic.suggest_name(&near.name.text);
+        }
         related.push(declared(near));
     }
     related.extend(unread.map(declared));
@@ -109,11 +111,12 @@ fn unknown_node(names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Relat
     let near = near(text, &nodes);
     // The library may have a name that is nearer.
     let is_nearer = near.is_some_and(|near| {
-        diagnostic.help.as_ref().is_none_or(|help| *help == sentences::did_you_mean(&near.name.text))
+        let suggested = diagnostic.suggestion.as_ref().and_then(|suggestion| suggestion.edits.first());
+        diagnostic.help.is_none() || suggested.is_some_and(|(_, name)| *name == near.name.text)
     });
     let meant = near.filter(|_| is_nearer);
     if let Some(near) = meant {
-        diagnostic.help = Some(sentences::did_you_mean(&near.name.text));
+        diagnostic.suggest_name(&near.name.text);
     }
     meant.or_else(|| only_unread(&nodes)).map(declared).into_iter().collect()
 }
@@ -152,7 +155,7 @@ fn no_output(names: &Names, diagnostic: &mut Diagnostic, text: &str) -> Related 
         (None, _) => None,
     };
     if let Some(meant) = meant {
-        diagnostic.help = Some(sentences::did_you_mean(&meant.text));
+        diagnostic.suggest_name(&meant.text);
         return vec![(meant.span, format!("`{}` is declared here and gets no value", meant.text))];
     }
     declared_row(names, &body.outputs).into_iter().collect()

@@ -48,7 +48,7 @@ pub fn no_layers(place: Place, name: &str) -> Diagnostic {
 /// A named argument that is no input.
 pub fn unknown_argument(place: Place, name: &str, input: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0206", place, format!("`{name}` has no input `{input}`"), "no such input")
-        .maybe_help(near.map(|near| format!("did you mean `{near}:`?")))
+        .did_you_mean(near)
 }
 
 /// An input that is given two arguments.
@@ -61,7 +61,7 @@ pub fn argument_twice(place: Place, name: &str, input: &str, first: Place) -> Di
 pub fn unknown_choice(place: Place, input: &str, words: &[String], found: &str) -> Diagnostic {
     let near = super::names::nearest(found, words.iter().map(String::as_str));
     Diagnostic::new("E0214", place, format!("`{input}` is one of {}", list(words)), "not one of them")
-        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
+        .did_you_mean(near)
 }
 
 /// A choice written as a string.

@@ -48,5 +48,5 @@ pub fn no_such_item(place: Place, alias: &str, name: &str, near: Option<String>)
         format!("`{alias}` declares no `{name}`"),
         format!("not an item of `{alias}`"),
     )
-    .maybe_help(near.map(|near| format!("did you mean `{alias}.{near}`?")))
+    .did_you_mean(near)
 }

@@ -2,13 +2,15 @@
 //!
 //! A [`Diagnostic`] is plain data. The sentences live beside each other in one file per stage
 //! (`syntax`, `names`, `types`, …), each a function that makes the diagnostic; the layout lives in
-//! [`render`], and the long explanations in `pages/`, listed by [`codes`].
+//! [`render`] (pages for people) and [`json`] (objects for editors), and the long explanations in
+//! `pages/`, listed by [`codes`].
 
 pub mod arguments;
 pub mod codes;
 pub mod constructors;
 pub mod folds;
 pub mod imports;
+pub mod json;
 pub mod limits;
 pub mod names;
 pub mod nodes;
@@ -20,6 +22,7 @@ pub mod types;
 pub mod unsupported;
 
 pub use crate::graph::Place;
+use texgraph_grammar::syntax::Span;
 
 /// One error, ready to be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,6 +39,39 @@ pub struct Diagnostic {
     pub related: Vec<(Place, String)>,
     /// A likely mend.
     pub help: Option<String>,
+    /// The same as edits that an editor can make.
+    pub suggestion: Option<Suggestion>,
+}
+
+/// Edits that make up one likely mend.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Suggestion {
+    /// Places with what stands there instead; an empty place is an insertion. In source order, apart
+    /// from each other.
+    pub edits: Vec<(Place, String)>,
+    /// Whether the mend is surely what was meant, so that a tool may make it unasked.
+    pub is_sure: bool,
+}
+
+impl Suggestion {
+    /// One place with what stands there instead.
+    pub fn replace(place: Place, text: impl Into<String>) -> Suggestion {
+        Suggestion { edits: vec![(place, text.into())], is_sure: false }
+    }
+
+    /// Something before a place and something behind it.
+    pub fn around(place: Place, before: impl Into<String>, behind: impl Into<String>) -> Suggestion {
+        let at = |offset| Place { span: Span { start: offset, end: offset }, ..place };
+        let edits = vec![(at(place.span.start), before.into()), (at(place.span.end), behind.into())];
+        Suggestion { edits, is_sure: false }
+    }
+
+    /// The same, surely meant.
+    #[must_use]
+    pub fn sure(mut self) -> Suggestion {
+        self.is_sure = true;
+        self
+    }
 }
 
 impl Diagnostic {
@@ -53,6 +89,7 @@ impl Diagnostic {
             label: label.into(),
             related: Vec::new(),
             help: None,
+            suggestion: None,
         }
     }
 
@@ -74,6 +111,26 @@ impl Diagnostic {
     #[must_use]
     pub fn maybe_help(mut self, help: Option<String>) -> Diagnostic {
         self.help = help.or(self.help);
+        self
+    }
+
+    /// With a name that was probably meant here, if there is one.
+    #[must_use]
+    pub fn did_you_mean(mut self, near: Option<String>) -> Diagnostic {
+        near.iter().for_each(|near| self.suggest_name(near));
+        self
+    }
+
+    /// Suggests a name that was probably meant here.
+    pub fn suggest_name(&mut self, near: &str) {
+        self.help = Some(format!("did you mean `{near}`?"));
+        self.suggestion = Some(Suggestion::replace(self.place, near));
+    }
+
+    /// With the edits of a likely mend, if there are any.
+    #[must_use]
+    pub fn suggest(mut self, suggestion: Option<Suggestion>) -> Diagnostic {
+        self.suggestion = suggestion.or(self.suggestion);
         self
     }
 

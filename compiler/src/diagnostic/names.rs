@@ -1,6 +1,6 @@
 //! Sentences about names.
 
-use super::{Diagnostic, Place};
+use super::{Diagnostic, Place, Suggestion};
 
 /// The candidate that a misspelt name most likely means: one that differs only in case and
 /// underscores, has a word more or less (`cell`, `my_cell`), or else differs in less than about a
@@ -36,12 +36,17 @@ fn has_word(whole: &str, part: &str) -> bool {
 /// What functions of shading languages are here.
 const FOREIGN: &[(&str, &str)] = &[
     ("atan", "`atan2(y, x)`"),
+    ("bool", "`x != 0`"),
     ("clamp01", "`clamp(x, 0.0, 1.0)`"),
     ("color", "`vec4(r, g, b, a)`, or a literal such as `#a0c040`"),
     ("dFdx", "`dx(v)`"),
     ("dFdy", "`dy(v)`"),
     ("ddx", "`dx(v)`"),
     ("ddy", "`dy(v)`"),
+    ("degrees", "`x / 1deg`"),
+    ("dpdx", "`dx(v)`"),
+    ("dpdy", "`dy(v)`"),
+    ("fabs", "`abs(x)`"),
     ("fmod", "`x % y`"),
     ("frac", "`fract(x)`"),
     ("fwidth", "`footprint(v)`"),
@@ -50,24 +55,39 @@ const FOREIGN: &[(&str, &str)] = &[
     ("mad", "`a * b + c`"),
     ("mod", "`x % y`"),
     ("mul", "`a * b`"),
+    ("powf", "`pow(x, y)`"),
+    ("radians", "`x * 1deg`"),
     ("rand", "`hash(i)`, of ints"),
     ("random", "`hash(i)`, of ints"),
     ("rsqrt", "`1.0 / sqrt(x)`"),
     ("saturate", "`clamp(x, 0.0, 1.0)`"),
     ("select", "`if c { a } else { b }`"),
     ("tex2D", "`image.sample(uv)`"),
+    ("texelFetch", "`image.texel(i)`"),
+    ("texture2D", "`image.sample(uv)`"),
     ("textureLod", "`image.sample(uv, lod: l)`"),
     ("textureSample", "`image.sample(uv)`"),
 ];
 
-fn foreign(name: &str) -> Option<String> {
-    let known = FOREIGN.iter().find(|(theirs, _)| *theirs == name);
-    known.map(|(_, ours)| format!("here it is written {ours}"))
-}
+/// What values of shading languages are here.
+const FOREIGN_VALUES: &[(&str, &str)] = &[
+    ("M_PI", "`180deg`"),
+    ("None", "`none`"),
+    ("PI", "`180deg`"),
+    ("TAU", "`360deg`"),
+    ("fragCoord", "`uv`, an input of the texture"),
+    ("gl_FragCoord", "`uv`, an input of the texture"),
+    ("iResolution", "`footprint(uv)`, the size of a pixel"),
+    ("iTime", "`time`, an input of the texture"),
+    ("nil", "`none`"),
+    ("null", "`none`"),
+    ("pi", "`180deg`"),
+    ("tau", "`360deg`"),
+];
 
-/// The help that suggests a name.
-pub fn did_you_mean(near: &str) -> String {
-    format!("did you mean `{near}`?")
+fn foreign(table: &[(&str, &str)], name: &str) -> Option<String> {
+    let known = table.iter().find(|(theirs, _)| *theirs == name);
+    known.map(|(_, ours)| format!("here it is written {ours}"))
 }
 
 /// The help for an input of textures that is read where it is not declared.
@@ -77,8 +97,10 @@ pub fn not_passed_on(node: &str, input: &str) -> String {
 
 /// A value that nobody declared.
 pub fn unknown_value(place: Place, name: &str, near: Option<String>) -> Diagnostic {
+    let foreign = foreign(FOREIGN_VALUES, name);
     Diagnostic::new("E0101", place, format!("there is no value `{name}` here"), "no such name")
-        .maybe_help(near.map(|near| did_you_mean(&near)))
+        .did_you_mean(near.filter(|_| foreign.is_none()))
+        .maybe_help(foreign)
 }
 
 /// An alias that is missing: a file is imported, but its items joined ours.
@@ -90,8 +112,10 @@ pub fn missing_alias(place: Place, name: &str) -> Diagnostic {
 
 /// A node that nobody declared.
 pub fn unknown_callable(place: Place, name: &str, near: Option<String>) -> Diagnostic {
+    let foreign = foreign(FOREIGN, name);
     Diagnostic::new("E0102", place, format!("there is no node `{name}`"), "no such node")
-        .maybe_help(foreign(name).or_else(|| near.map(|near| did_you_mean(&near))))
+        .did_you_mean(near.filter(|_| foreign.is_none()))
+        .maybe_help(foreign)
 }
 
 /// A name bound again in one body or file.
@@ -116,24 +140,25 @@ pub fn cycle(place: Place, names: &[&str]) -> Diagnostic {
 /// A field that a value does not have.
 pub fn unknown_field(place: Place, what: &str, name: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0105", place, format!("{what} has no field `{name}`"), "no such field")
-        .maybe_help(near.map(|near| did_you_mean(&near)))
+        .did_you_mean(near)
 }
 
 /// An assignment to something that is no output.
 pub fn no_such_output(place: Place, node: &str, name: &str, near: Option<String>) -> Diagnostic {
-    Diagnostic::new("E0106", place, format!("`{node}` has no output `{name}`"), "not an output").maybe_help(
-        near.map(|near| did_you_mean(&near))
-            .or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
-    )
+    let message = format!("`{node}` has no output `{name}`");
+    no_such_target(Diagnostic::new("E0106", place, message, "not an output"), name, near)
 }
 
 /// An assignment in a fold to something that is no accumulator.
 pub fn no_such_accumulator(place: Place, name: &str, near: Option<String>) -> Diagnostic {
-    Diagnostic::new("E0106", place, format!("the fold has no accumulator `{name}`"), "not in its head")
-        .maybe_help(
-            near.map(|near| did_you_mean(&near))
-                .or_else(|| Some(format!("a wire begins with `let`: `let {name} = …`"))),
-        )
+    let message = format!("the fold has no accumulator `{name}`");
+    no_such_target(Diagnostic::new("E0106", place, message, "not in its head"), name, near)
+}
+
+fn no_such_target(error: Diagnostic, name: &str, near: Option<String>) -> Diagnostic {
+    let wire = Suggestion::replace(error.place, format!("let {name}"));
+    let help = format!("a wire begins with `let`: `let {name} = …`");
+    error.help(help).suggest(Some(wire)).did_you_mean(near)
 }
 
 /// An output without a value.

@@ -5,7 +5,6 @@ use crate::module::Sources;
 use codespan_reporting::diagnostic::{Diagnostic as Page, Label};
 use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term::{self, Chars, Config};
-use serde::Serialize;
 
 /// Pages with source lines and underlines, as plain text.
 pub fn human(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
@@ -22,9 +21,14 @@ fn pages(sources: &Sources, diagnostics: &[Diagnostic], color: bool) -> String {
     diagnostics.iter().map(|diagnostic| rendered(&files, diagnostic, color)).collect()
 }
 
+/// One page as plain text.
+pub(super) fn page(files: &Shown, diagnostic: &Diagnostic) -> String {
+    rendered(files, diagnostic, false)
+}
+
 fn rendered(files: &Shown, diagnostic: &Diagnostic, color: bool) -> String {
     let config = Config { chars: Chars::box_drawing(), tab_width: 4, ..Config::default() };
-    let page = page(diagnostic, files.sources);
+    let page = laid_out(diagnostic, files.sources);
     let emitted = if color {
         emit_colored(&config, files, &page)
     } else {
@@ -40,7 +44,7 @@ fn emit_colored(config: &Config, files: &Shown, page: &Page<usize>) -> Result<St
     Ok(String::from_utf8_lossy(&ansi.into_inner()).into_owned())
 }
 
-fn page(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
+fn laid_out(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
     let label = |place: &Place| {
         // A place in a file that was never read has nothing to underline.
         sources.get(*place).map(|source| {
@@ -70,6 +74,11 @@ fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_control() && c != '\n' && c != '\t' { '?' } else { c }).collect()
 }
 
+/// One JSON object a line: [`super::json`].
+pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    super::json::lines(sources, diagnostics)
+}
+
 /// One line each: `file:line:column: error[E0101]: message`.
 pub fn short(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let files = Shown::new(sources);
@@ -77,125 +86,40 @@ pub fn short(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
 }
 
 fn line(files: &Shown, diagnostic: &Diagnostic) -> String {
-    let at = Position::of(files, diagnostic.place);
-    let (file, line, column) = (&at.file, at.line_start, at.column_start);
+    let (line, column) = files.line_and_column(diagnostic.place.file, diagnostic.place.span.start);
+    let file = files.sources.get(diagnostic.place).map_or("", |source| source.path.as_str());
     format!("{file}:{line}:{column}: error[{}]: {}\n", diagnostic.code, diagnostic.message)
 }
 
-/// One JSON object a line, in the manner of rustc's `--error-format json`.
-pub fn json(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
-    let files = Shown::new(sources);
-    let mut text = String::new();
-    for diagnostic in diagnostics {
-        let message = Message::of(&files, diagnostic);
-        text.push_str(&serde_json::to_string(&message).unwrap_or_default());
-        text.push('\n');
-    }
-    text
-}
-
-#[derive(Serialize)]
-struct Message<'a> {
-    message: &'a str,
-    code: Code<'a>,
-    level: &'static str,
-    spans: Vec<JsonSpan>,
-    children: Vec<Child<'a>>,
-    rendered: String,
-}
-
-#[derive(Serialize)]
-struct Code<'a> {
-    code: &'a str,
-    explanation: Option<&'a str>,
-}
-
-#[derive(Serialize)]
-struct JsonSpan {
-    #[serde(flatten)]
-    position: Position,
-    is_primary: bool,
-    label: String,
-}
-
-#[derive(Serialize)]
-struct Child<'a> {
-    message: &'a str,
-    level: &'static str,
-    spans: Vec<JsonSpan>,
-}
-
-impl<'a> Message<'a> {
-    fn of(files: &Shown, diagnostic: &'a Diagnostic) -> Message<'a> {
-        let span = |place: Place, is_primary: bool, label: &str| JsonSpan {
-            position: Position::of(files, place),
-            is_primary,
-            label: label.to_owned(),
-        };
-        let primary = span(diagnostic.place, true, &diagnostic.label);
-        let related = diagnostic.related.iter().map(|(place, label)| span(*place, false, label));
-        let help =
-            diagnostic.help.iter().map(|help| Child { message: help, level: "help", spans: Vec::new() });
-        Message {
-            message: &diagnostic.message,
-            code: Code { code: diagnostic.code, explanation: super::codes::explain(diagnostic.code) },
-            level: "error",
-            spans: std::iter::once(primary).chain(related).collect(),
-            children: help.collect(),
-            rendered: rendered(files, diagnostic, false),
-        }
-    }
-}
-
-/// A place as editors want it: bytes from 0, lines and columns (in characters) from 1.
-#[derive(Serialize)]
-struct Position {
-    #[serde(rename = "file_name")]
-    file: String,
-    byte_start: u32,
-    byte_end: u32,
-    line_start: usize,
-    line_end: usize,
-    column_start: usize,
-    column_end: usize,
-}
-
-impl Position {
-    fn of(files: &Shown, place: Place) -> Position {
-        let file = files.sources.get(place).map_or("", |source| source.path.as_str());
-        let (line_start, column_start) = files.line_and_column(place.file, place.span.start);
-        let (line_end, column_end) = files.line_and_column(place.file, place.span.end);
-        Position {
-            file: file.to_owned(),
-            byte_start: place.span.start,
-            byte_end: place.span.end,
-            line_start,
-            line_end,
-            column_start,
-            column_end,
-        }
-    }
-}
-
 /// The texts with the starts of their lines.
-struct Shown<'a> {
-    sources: &'a Sources,
+pub(super) struct Shown<'a> {
+    /// The texts as they are.
+    pub sources: &'a Sources,
     /// The texts as they are printed; places point into them just the same.
     texts: Vec<String>,
     lines: Vec<Vec<usize>>,
 }
 
 impl<'a> Shown<'a> {
-    fn new(sources: &'a Sources) -> Shown<'a> {
+    pub fn new(sources: &'a Sources) -> Shown<'a> {
         let starts = |text: &str| codespan_reporting::files::line_starts(text).collect();
         let texts: Vec<String> = sources.0.iter().map(|source| printable(&source.text)).collect();
         Shown { sources, lines: texts.iter().map(|text| starts(text)).collect(), texts }
     }
 }
 
-impl Shown<'_> {
+impl<'a> Shown<'a> {
+    /// A line, from 1, without its end.
+    pub fn line(&self, file: u32, number: usize) -> &'a str {
+        let starts = self.lines.get(file as usize).map_or(&[][..], Vec::as_slice);
+        let text: &'a str = self.sources.0.get(file as usize).map_or("", |source| &source.text);
+        let start = number.checked_sub(1).and_then(|index| starts.get(index)).copied().unwrap_or(text.len());
+        let end = starts.get(number).copied().unwrap_or(text.len());
+        text.get(start..end).unwrap_or_default().trim_end_matches(['\n', '\r'])
+    }
+
     /// From 1; columns in characters.
-    fn line_and_column(&self, file: u32, offset: u32) -> (usize, usize) {
+    pub fn line_and_column(&self, file: u32, offset: u32) -> (usize, usize) {
         let (file, offset) = (file as usize, offset as usize);
         let (Some(source), Ok(line)) = (self.sources.0.get(file), self.line_index(file, offset)) else {
             return (1, 1);

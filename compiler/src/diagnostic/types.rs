@@ -1,6 +1,6 @@
 //! Sentences about types and arguments.
 
-use super::{Diagnostic, Place};
+use super::{Diagnostic, Place, Suggestion};
 
 /// A value of another type than wanted, for an input or output if it has a name.
 pub fn mismatch(place: Place, name: Option<&str>, wanted: &str, found: &str) -> Diagnostic {
@@ -8,7 +8,9 @@ pub fn mismatch(place: Place, name: Option<&str>, wanted: &str, found: &str) -> 
         Some(name) => format!("`{name}` takes `{wanted}`, this is `{found}`"),
         None => format!("`{wanted}` is wanted, this is `{found}`"),
     };
-    Diagnostic::new("E0201", place, message, format!("`{found}`")).maybe_help(conversion(wanted, found))
+    Diagnostic::new("E0201", place, message, format!("`{found}`"))
+        .maybe_help(conversion(wanted, found))
+        .suggest(converted(place, wanted, found))
 }
 
 /// Arms of an `if` that have no common type.
@@ -17,6 +19,7 @@ pub fn arms_differ(place: Place, wanted: &str, found: &str, other: Place) -> Dia
     Diagnostic::new("E0201", place, message, format!("`{found}`"))
         .related(other, format!("`{wanted}`"))
         .maybe_help(conversion(wanted, found))
+        .suggest(converted(place, wanted, found))
 }
 
 /// A next value that the type of an accumulator can't hold.
@@ -25,6 +28,7 @@ pub fn accumulator(place: Place, name: &str, wanted: &str, found: &str, start: P
     let message = format!("the accumulator `{name}` is `{wanted}`, its next value `{found}`");
     Diagnostic::new("E0201", place, message, format!("`{found}`"))
         .related(start, format!("its start is `{wanted}`"))
+        .suggest(converted(place, wanted, found).filter(|_| help.is_none()))
         .maybe_help(help.or_else(|| conversion(wanted, found)))
 }
 
@@ -64,6 +68,25 @@ fn conversion(wanted: &str, found: &str) -> Option<String> {
     })
 }
 
+/// The same as an edit of the value.
+fn converted(place: Place, wanted: &str, found: &str) -> Option<Suggestion> {
+    let around = |before: String, behind: String| Some(Suggestion::around(place, before, behind));
+    match (shape(wanted)?, shape(found)?) {
+        (('b', _), _) => None,
+        (('f', 1), ('b', _)) => around("if ".into(), " { 1.0 } else { 0.0 }".into()),
+        (('i', 1), ('b', _)) => around("if ".into(), " { 1 } else { 0 }".into()),
+        (_, ('b', _)) => None,
+        (('i', want), ('f', have)) if have == 1 || have == want => around("ifloor(".into(), ")".into()),
+        (('i', _), ('f', _)) => None,
+        ((_, want), (_, have)) if have > want => around("(".into(), format!(").{}", "xyzw".get(..want)?)),
+        ((scalar, want), (_, have)) if have < want => {
+            let parts = if scalar == 'i' { ["0"; 4] } else { ["0.0", "0.0", "0.0", "1.0"] };
+            around(format!("{wanted}("), format!(", {})", parts.get(have..want)?.join(", ")))
+        }
+        _ => None,
+    }
+}
+
 /// Names of types in other languages.
 const FOREIGN: &[(&str, &str)] = &[
     ("boolean", "bool"),
@@ -87,9 +110,8 @@ const FOREIGN: &[(&str, &str)] = &[
 /// A type nobody knows.
 pub fn unknown_type(place: Place, name: &str, near: Option<String>) -> Diagnostic {
     let foreign = FOREIGN.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| (*ours).to_owned());
-    let near = foreign.or(near);
     Diagnostic::new("E0202", place, format!("there is no type `{name}`"), "no such type")
-        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
+        .did_you_mean(foreign.or(near))
 }
 
 /// Two widths where one is wanted.
@@ -141,7 +163,9 @@ pub fn not_a_record(place: Place) -> Diagnostic {
 
 /// Several outputs where one value is wanted.
 pub fn record_as_value(place: Place, outputs: &[String]) -> Diagnostic {
-    let help = outputs.first().map(|first| format!("take one of its outputs: `.{first}`"));
+    let taken: Vec<String> = outputs.iter().map(|output| format!("`.{output}`")).collect();
+    let help = (!taken.is_empty()).then(|| format!("take one of its outputs: {}", taken.join(" or ")));
+    let first = outputs.first().map(|first| Suggestion::around(place, "", format!(".{first}")));
     Diagnostic::new(
         "E0213",
         place,
@@ -149,6 +173,7 @@ pub fn record_as_value(place: Place, outputs: &[String]) -> Diagnostic {
         format!("its outputs are {}", list(outputs)),
     )
     .maybe_help(help)
+    .suggest(first)
 }
 
 /// An int that does not fit.
@@ -165,10 +190,8 @@ pub fn float_too_large(place: Place) -> Diagnostic {
 /// An input that no host could feed.
 pub fn unknown_texture_input(place: Place, name: &str, known: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0217", place, format!("a texture can't take `{name}`"), "hosts don't know this input")
-        .help(match near {
-            Some(near) => format!("did you mean `{near}`?"),
-            None => format!("the inputs are {known}; a `param` is a value that the host sets"),
-        })
+        .help(format!("the inputs are {known}; a `param` is a value that the host sets"))
+        .did_you_mean(near)
 }
 
 /// A known input or output with another type than its own.
@@ -179,6 +202,7 @@ pub fn fixed_type(place: Place, name: &str, wanted: &str) -> Diagnostic {
         format!("`{name}` of a texture is `{wanted}`"),
         format!("write `{name}: {wanted}`"),
     )
+    .suggest(Some(Suggestion::replace(place, wanted).sure()))
 }
 
 /// A vector from too many or too few parts.
