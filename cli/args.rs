@@ -39,6 +39,16 @@ Examples:
 The picture shows a rectangle of `uv`, (0, 0) at its top left. Colours are written with 8 bits,
 other outputs as 16-bit linear data.";
 
+const GRAPH: &str = "\
+Examples:
+  texgraph graph tiling.tex -o tiling.svg            the file's first texture as a picture
+  texgraph graph landscape.tex:material -o m.svg     one node of it
+  texgraph graph tiling.tex | dot -Tpdf > tiling.pdf
+A block is a call, a formula, a fold; a wire bears the name that its `let` gives it. Colours tell
+how often a value is computed: when loading, once a draw, once a pixel. Without -o the text for
+Graphviz goes to standard output; it has no bound, a picture shows 400 blocks at most.
+Only the syntax has to be right: what is declared nowhere is drawn all the same.";
+
 const FMT: &str = "\
 Examples:
   texgraph fmt tiling.tex          rewrites the file if its layout is not the canonical one
@@ -67,6 +77,8 @@ pub enum Command {
     Build(Build),
     /// Render a texture to a PNG picture
     Render(Render),
+    /// Draw the node diagram of a texture or a node
+    Graph(Graph),
     /// Put .tex files into their canonical layout
     Fmt(Fmt),
     /// Explain an error code
@@ -79,7 +91,8 @@ impl Command {
         match self {
             Command::Check(Check { common, .. })
             | Command::Build(Build { common, .. })
-            | Command::Render(Render { common, .. }) => common.message_format,
+            | Command::Render(Render { common, .. })
+            | Command::Graph(Graph { common, .. }) => common.message_format,
             Command::Fmt(_) | Command::Explain(_) => MessageFormat::Human,
         }
     }
@@ -208,6 +221,19 @@ pub enum Backend {
     Gpu,
     /// The CPU
     Cpu,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = GRAPH)]
+pub struct Graph {
+    /// The .tex file, with the name of the texture or node if it is not the first texture
+    #[arg(value_name = "FILE[:NAME]")]
+    pub file: OsString,
+    /// The file that is written, by its ending: .svg a picture, .dot text for Graphviz
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub common: Common,
 }
 
 #[derive(clap::Args)]

@@ -16,6 +16,7 @@ mod build;
 mod check;
 mod explain;
 mod fmt;
+mod graph;
 mod output;
 mod problem;
 mod program;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args, &mut report),
         Command::Build(args) => build::run(args, &mut report),
         Command::Render(args) => render::run(args),
+        Command::Graph(args) => graph::run(args),
         Command::Fmt(args) => fmt::run(args, &mut report),
         Command::Explain(args) => explain::run(args),
     };

@@ -3,7 +3,9 @@
 //! Every error comes out as a [`Problem`] with the texts that its pages show.
 
 use crate::problem::Problem;
-use std::path::Path;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use texgraph_compiler::diagram::Diagram;
 use texgraph_compiler::module::{Loader, Source, Sources};
 use texgraph_compiler::{Compiled, Failure, Library, Options};
 use texgraph_runtime::project::Project;
@@ -61,6 +63,14 @@ impl<'a> Program<'a> {
         texgraph_compiler::compile(self.library, &self.path, &self.project, options)
     }
 
+    /// The diagram of a texture or node; the first texture when none is named.
+    ///
+    /// # Errors
+    /// All syntax errors, or there is no such texture or node.
+    pub fn diagram(&self, name: Option<&str>) -> Result<Diagram, Failure> {
+        texgraph_compiler::diagram::diagram(self.library, &self.path, &self.project, name)
+    }
+
     /// Loads the textures that a compiled program reads, and enters their sizes into its manifest.
     ///
     /// # Errors
@@ -69,6 +79,29 @@ impl<'a> Program<'a> {
         resource::load(&mut compiled.program, &self.project)
             .map_err(|diagnostics| Failure { sources: compiled.sources.clone(), diagnostics })
     }
+}
+
+/// Cuts `FILE:TEXTURE`, or `FILE:TEXTURE.WIRE`. What follows the last `:` is a name only if it could
+/// be one: `C:\walls.tex` is a file.
+pub fn split(argument: &OsStr) -> (PathBuf, Option<String>) {
+    let cut = argument.to_str().and_then(|text| text.rsplit_once(':'));
+    match cut {
+        Some((file, name)) if !file.is_empty() && is_wire(name) => (file.into(), Some(name.to_owned())),
+        _ => (argument.into(), None),
+    }
+}
+
+/// `texture`, `node` or `texture.wire`; `walls.tex` is a file.
+fn is_wire(text: &str) -> bool {
+    match text.split_once('.') {
+        Some((name, wire)) => is_name(name) && is_name(wire) && wire != "tex",
+        None => is_name(text),
+    }
+}
+
+fn is_name(text: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+    text.starts_with(is_letter) && text.chars().all(|c| is_letter(c) || c.is_ascii_digit())
 }
 
 /// The text of a `.tex` file, with its path as shown.
@@ -100,4 +133,31 @@ fn project(file: &Path, allow_outside: bool) -> Result<(Project, String), Proble
         _ => format!("{}/{}", folder.trim_end_matches('/'), project.main()),
     };
     Ok((project, path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::split;
+    use std::ffi::OsStr;
+    use std::path::PathBuf;
+
+    #[test]
+    fn a_texture_is_cut_off_only_where_one_is_named() {
+        let cases = [
+            ("a.tex", "a.tex", None),
+            ("a.tex:bricks", "a.tex", Some("bricks")),
+            (r"C:\a.tex", r"C:\a.tex", None),
+            (r"C:\a.tex:_b2", r"C:\a.tex", Some("_b2")),
+            ("C:/a.tex", "C:/a.tex", None),
+            ("a.tex:", "a.tex:", None),
+            (":bricks", ":bricks", None),
+            ("a.tex:2b", "a.tex:2b", None),
+            ("a:b:c", "a:b", Some("c")),
+            ("a.tex:bricks.pick", "a.tex", Some("bricks.pick")),
+            ("C:walls.tex", "C:walls.tex", None),
+        ];
+        for (argument, file, texture) in cases {
+            assert_eq!(split(OsStr::new(argument)), (PathBuf::from(file), texture.map(str::to_owned)));
+        }
+    }
 }

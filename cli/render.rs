@@ -9,9 +9,8 @@ use crate::output;
 use crate::problem::Problem;
 use crate::program::{self, Program};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::ffi::OsStr;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use texgraph_compiler::{Compiled, Options};
@@ -27,7 +26,7 @@ const PATIENCE: Duration = Duration::from_millis(700);
 /// Anything is wrong; the old picture is then as it was.
 pub fn run(args: &Render) -> Result<(), Problem> {
     check_target(&args.output_file)?;
-    let (file, texture) = split(&args.file);
+    let (file, texture) = program::split(&args.file);
     let library = program::library()?;
     let program = Program::open(&library, &file, args.common.allow_outside)?;
     let mut compiled = compile(&program, texture, args.output.as_deref())?;
@@ -54,29 +53,6 @@ fn check_target(path: &Path) -> Result<(), Problem> {
         return Err(Problem::Usage(format!("only PNG pictures are written: `{path}` must end in `.png`")));
     }
     output::try_out(path)
-}
-
-/// Cuts `FILE:TEXTURE`, or `FILE:TEXTURE.WIRE`. What follows the last `:` is a texture only if it could be the name of one:
-/// `C:\walls.tex` is a file.
-fn split(argument: &OsStr) -> (PathBuf, Option<String>) {
-    let cut = argument.to_str().and_then(|text| text.rsplit_once(':'));
-    match cut {
-        Some((file, name)) if !file.is_empty() && is_wire(name) => (file.into(), Some(name.to_owned())),
-        _ => (argument.into(), None),
-    }
-}
-
-/// `texture`, `node` or `texture.wire`; `walls.tex` is a file.
-fn is_wire(text: &str) -> bool {
-    match text.split_once('.') {
-        Some((name, wire)) => is_name(name) && is_name(wire) && wire != "tex",
-        None => is_name(text),
-    }
-}
-
-fn is_name(text: &str) -> bool {
-    let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
-    text.starts_with(is_letter) && text.chars().all(|c| is_letter(c) || c.is_ascii_digit())
 }
 
 /// Compiles the wanted output alone. Which outputs there are is known only after compiling, so
@@ -130,32 +106,5 @@ impl Progress {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
         self.bar.set_position((share.clamp(0.0, 1.0) * 1000.0) as u64);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::split;
-    use std::ffi::OsStr;
-    use std::path::PathBuf;
-
-    #[test]
-    fn a_texture_is_cut_off_only_where_one_is_named() {
-        let cases = [
-            ("a.tex", "a.tex", None),
-            ("a.tex:bricks", "a.tex", Some("bricks")),
-            (r"C:\a.tex", r"C:\a.tex", None),
-            (r"C:\a.tex:_b2", r"C:\a.tex", Some("_b2")),
-            ("C:/a.tex", "C:/a.tex", None),
-            ("a.tex:", "a.tex:", None),
-            (":bricks", ":bricks", None),
-            ("a.tex:2b", "a.tex:2b", None),
-            ("a:b:c", "a:b", Some("c")),
-            ("a.tex:bricks.pick", "a.tex", Some("bricks.pick")),
-            ("C:walls.tex", "C:walls.tex", None),
-        ];
-        for (argument, file, texture) in cases {
-            assert_eq!(split(OsStr::new(argument)), (PathBuf::from(file), texture.map(str::to_owned)));
-        }
     }
 }

@@ -8,6 +8,8 @@ mod build;
 mod check;
 #[path = "cli/fmt.rs"]
 mod fmt;
+#[path = "cli/graph.rs"]
+mod graph;
 #[path = "cli/help.rs"]
 mod help;
 #[path = "cli/render.rs"]

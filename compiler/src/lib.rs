@@ -13,6 +13,7 @@ mod check;
 pub mod color;
 pub mod contract;
 pub mod diagnostic;
+pub mod diagram;
 pub mod emit;
 pub mod graph;
 mod input;

@@ -16,7 +16,7 @@ mod globals;
 mod layer;
 mod matrix;
 mod node;
-mod order;
+pub mod order;
 mod passes;
 mod plan;
 mod range;

@@ -63,6 +63,18 @@ pub fn no_such_texture(place: Place, name: &str, known: &str, near: Option<Strin
         .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
 }
 
+/// A texture or node asked for, to draw its diagram, that the file does not have.
+pub fn nothing_to_draw(place: Place, name: &str, known: &str, near: Option<String>) -> Diagnostic {
+    no_such_texture(place, name, known, None)
+        .because(format!("the file has no texture and no node `{name}`"))
+        .help(if known.is_empty() {
+            "it declares none".to_owned()
+        } else {
+            format!("its textures and nodes are {known}")
+        })
+        .maybe_help(near.map(|near| format!("did you mean `{near}`?")))
+}
+
 /// An output asked for that the texture does not have.
 pub fn no_such_texture_output(place: Place, name: &str, known: &str, near: Option<String>) -> Diagnostic {
     Diagnostic::new("E0803", place, format!("the texture has no output `{name}`"), "its head")
