@@ -45,14 +45,6 @@ node _sprite(d: float) -> (distance: float, random: float) {
     distance = d
     random   = fract(d)
 }
-node fbm<n>(p: vec<n>, octaves: int = 4) -> (value: float) {
-    let sum = fold (v = 0.0, scale = 1.0) for i in 0..min(octaves, 16) {
-        v     = v + virtual_random(ifloor(p * scale), stream: i).x / scale
-        scale = scale * 2.0
-    }
-    value = sum.v
-}
-node turbulence<n>(p: vec<n>, octaves: int = 4) -> (value: float) { value = abs(fbm(p, octaves: octaves)) }
 node voronoi<n>(p: vec<n>, per_cell: int = 1) -> (distance: float, edge: float) {
     distance = length(fract(p)) * per_cell
     edge     = 0.5

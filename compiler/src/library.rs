@@ -11,6 +11,8 @@ use texgraph_grammar::syntax::{ItemKind, Signature};
 const FILES: &[(&str, &str)] = &[
     ("std/tiling.tex", include_str!("../std/tiling.tex")),
     ("std/resources.tex", include_str!("../std/resources.tex")),
+    ("std/noise.tex", include_str!("../std/noise.tex")),
+    ("std/hex.tex", include_str!("../std/hex.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),
     ("std/matrix.tex", include_str!("../std/matrix.tex")),
 ];
