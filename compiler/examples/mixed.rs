@@ -50,9 +50,14 @@ fn compile_often(nodes: usize, times: usize) -> Result<(), Box<dyn std::error::E
         let start = Instant::now();
         let compiled = compile(&library, "mixed.tex", &files, &Options::default());
         quickest = quickest.min(start.elapsed());
-        bytes = compiled.map_err(|failure| format!("{:?}", failure.diagnostics))?.program.texture().wgsl.len();
+        bytes =
+            compiled.map_err(|failure| format!("{:?}", failure.diagnostics))?.program.texture().wgsl.len();
     }
-    println!("{nodes} nodes: {:.3} ms, {bytes} bytes of WGSL, {}", quickest.as_secs_f64() * 1e3, peak_memory());
+    println!(
+        "{nodes} nodes: {:.3} ms, {bytes} bytes of WGSL, {}",
+        quickest.as_secs_f64() * 1e3,
+        peak_memory()
+    );
     Ok(())
 }
 

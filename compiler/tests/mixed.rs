@@ -61,7 +61,10 @@ fn every_size_is_a_document_of_as_many_elements() {
         let text = mixed::materialx(&graph);
         let (opened, closed) = (text.matches("\n    <").count(), text.matches("\n    </").count());
         // The coordinate and the output are elements too, and means of what is left over.
-        assert_eq!((opened - closed, closed), (nodes + 2 + graph.ends.len() - 1, nodes + graph.ends.len() - 1));
+        assert_eq!(
+            (opened - closed, closed),
+            (nodes + 2 + graph.ends.len() - 1, nodes + graph.ends.len() - 1)
+        );
     }
 }
 

@@ -15,7 +15,12 @@ pub fn materialx(graph: &Mixed) -> String {
     for (i, end) in graph.ends.iter().enumerate().skip(1) {
         let name = format!("end{i}");
         let by = Input("mix", "float", number(1.0 / (i + 1) as f32));
-        text += &node("mix", &name, "color3", &[wire("bg", "color3", &mean), wire("fg", "color3", &graph.name(*end)), by]);
+        text += &node(
+            "mix",
+            &name,
+            "color3",
+            &[wire("bg", "color3", &mean), wire("fg", "color3", &graph.name(*end)), by],
+        );
         mean = name;
     }
     text + &format!(

@@ -84,11 +84,9 @@ impl Kind {
         match self {
             Kind::Place(_) | Kind::Warp(..) => Gives::Place,
             Kind::Hex(..) | Kind::Image(..) | Kind::Blend(..) => Gives::Color,
-            Kind::Noise(_)
-            | Kind::Fractal(..)
-            | Kind::Cell(_)
-            | Kind::Arithmetic(..)
-            | Kind::Shape(..) => Gives::Number,
+            Kind::Noise(_) | Kind::Fractal(..) | Kind::Cell(_) | Kind::Arithmetic(..) | Kind::Shape(..) => {
+                Gives::Number
+            }
         }
     }
 

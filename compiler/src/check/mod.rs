@@ -8,14 +8,18 @@
 
 mod arguments;
 mod call;
+mod choice;
 mod constructor;
 mod default;
 mod expr;
 mod fold;
+mod frame;
 mod globals;
+mod index;
 mod layer;
 mod matrix;
 mod node;
+mod operator;
 pub mod order;
 mod passes;
 mod plan;
@@ -36,11 +40,12 @@ use crate::graph::{
 use crate::library::{Callable, Library};
 use crate::module::Module;
 use crate::resource::{KINDS, Resource};
+use frame::{Frame, Step, Target};
 use globals::Global;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Postfix, Span};
-use types::{Declared, Dims};
+use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span};
+use types::Declared;
 use wire::{ArgumentKey, Key, NodeWire, ResourceWire, Wire};
 
 /// What a made node is.
@@ -89,63 +94,6 @@ struct ResourceFields {
     kind: usize,
     views: Vec<ViewId>,
     constants: Vec<(&'static str, crate::graph::Constant)>,
-}
-
-/// One thing to do in a function: bind names, assign an output, or declare a param.
-struct Step<'a> {
-    target: Target<'a>,
-    value: &'a Expr,
-}
-
-/// What a step's value goes to.
-#[derive(Clone, Copy)]
-enum Target<'a> {
-    Let(&'a Pattern),
-    Output(&'a Name),
-    Global(&'a Name, &'a str),
-    Param(&'a texgraph_grammar::syntax::Item),
-    Default(&'a Input),
-    /// A node that is rendered on its own, by its item.
-    Render(usize),
-}
-
-/// A function in the making.
-pub struct Frame<'a> {
-    /// None for the `let`s and params of a file.
-    key: Option<Key>,
-    node: Option<&'a Node>,
-    module: usize,
-    dims: Dims,
-    builder: Builder,
-    scopes: Vec<FxHashMap<&'a str, Wire>>,
-    /// The functions around the one that the builder makes, the outermost first.
-    layers: Vec<layer::Layer>,
-    /// The first scope of the function that the builder makes.
-    base: usize,
-    steps: Vec<Step<'a>>,
-    order: Vec<usize>,
-    next: usize,
-    /// The names that the steps bind.
-    bound: FxHashSet<&'a str>,
-    /// Where names stand that were bound before: the first binding holds.
-    repeated: FxHashSet<u32>,
-    /// Outputs whose declared type is wrong, and names that are bound twice: what they get is not
-    /// looked at.
-    doubtful: FxHashSet<&'a str>,
-    /// Names that nobody declared, reported once.
-    unknown: plan::Reported,
-    /// Nodes that the current step waits for, with the calls.
-    waiting: Vec<(Key, Place)>,
-    failed: bool,
-    /// How far chains of methods in the current step have come, by their first link: a step that
-    /// waited goes on from there.
-    progress: FxHashMap<*const Postfix, (usize, Wire)>,
-    /// Expressions are evaluated for other names than the step's own: a fold's body, a default.
-    foreign: u32,
-    /// Index of the frame that waits for this one.
-    parent: Option<usize>,
-    /// The statement whose value is being made; names made-up resources.
-    current: String,
 }
 
 impl<'a> Checker<'a> {
@@ -534,72 +482,6 @@ impl<'a> Checker<'a> {
         }
         let id = Some(resource);
         Wire::Resource(Rc::new(ResourceWire { kind: *kind, id, views, constants: constants.clone() }))
-    }
-}
-
-impl<'a> Frame<'a> {
-    fn empty() -> Frame<'a> {
-        Frame {
-            key: None,
-            node: None,
-            module: 0,
-            dims: Vec::new(),
-            builder: Builder::default(),
-            scopes: vec![FxHashMap::default()],
-            layers: Vec::new(),
-            base: 0,
-            steps: Vec::new(),
-            order: Vec::new(),
-            bound: FxHashSet::default(),
-            repeated: FxHashSet::default(),
-            doubtful: FxHashSet::default(),
-            unknown: plan::Reported::default(),
-            next: 0,
-            waiting: Vec::new(),
-            failed: false,
-            progress: FxHashMap::default(),
-            foreign: 0,
-            parent: None,
-            current: String::new(),
-        }
-    }
-}
-
-impl<'a> Frame<'a> {
-    /// The name of the node whose body is being made, whatever stands inside it.
-    fn function_name(&self) -> String {
-        self.builder_of(0).function().name.clone()
-    }
-}
-
-impl<'a> Step<'a> {
-    fn names(&self) -> Vec<&'a str> {
-        match self.target {
-            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => {
-                vec![&name.text]
-            }
-            Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
-            Target::Param(_) | Target::Default(_) | Target::Render(_) => vec![self.target.name()],
-        }
-    }
-
-    fn span(&self) -> Span {
-        self.value.span
-    }
-}
-
-impl<'a> Target<'a> {
-    fn name(&self) -> &'a str {
-        match *self {
-            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => &name.text,
-            Target::Let(Pattern::Record(names, _)) => names.first().map_or("", |name| &name.text),
-            Target::Default(input) => &input.name.text,
-            Target::Render(_) => "value",
-            Target::Param(item) => match &item.kind {
-                ItemKind::Param { name, .. } => &name.text,
-                _ => "",
-            },
-        }
     }
 }
 

@@ -1,0 +1,131 @@
+//! A function in the making: what is in scope, what is left to do, and what it waits for.
+
+use super::layer::Layer;
+use super::plan::Reported;
+use super::types::Dims;
+use super::wire::{Key, Wire};
+use crate::diagnostic::Place;
+use crate::graph::Builder;
+use rustc_hash::{FxHashMap, FxHashSet};
+use texgraph_grammar::syntax::{Expr, Input, Item, ItemKind, Name, Node, Pattern, Postfix, Span};
+
+/// One thing to do in a function: bind names, assign an output, or declare a param.
+pub struct Step<'a> {
+    pub(super) target: Target<'a>,
+    pub(super) value: &'a Expr,
+}
+
+/// What a step's value goes to.
+#[derive(Clone, Copy)]
+pub enum Target<'a> {
+    Let(&'a Pattern),
+    Output(&'a Name),
+    Global(&'a Name, &'a str),
+    Param(&'a Item),
+    Default(&'a Input),
+    /// A node that is rendered on its own, by its item.
+    Render(usize),
+}
+
+/// A function in the making.
+pub struct Frame<'a> {
+    /// None for the `let`s and params of a file.
+    pub(super) key: Option<Key>,
+    pub(super) node: Option<&'a Node>,
+    pub(super) module: usize,
+    pub(super) dims: Dims,
+    pub(super) builder: Builder,
+    pub(super) scopes: Vec<FxHashMap<&'a str, Wire>>,
+    /// The functions around the one that the builder makes, the outermost first.
+    pub(super) layers: Vec<Layer>,
+    /// The first scope of the function that the builder makes.
+    pub(super) base: usize,
+    pub(super) steps: Vec<Step<'a>>,
+    pub(super) order: Vec<usize>,
+    pub(super) next: usize,
+    /// The names that the steps bind.
+    pub(super) bound: FxHashSet<&'a str>,
+    /// Where names stand that were bound before: the first binding holds.
+    pub(super) repeated: FxHashSet<u32>,
+    /// Outputs whose declared type is wrong, and names that are bound twice: what they get is not
+    /// looked at.
+    pub(super) doubtful: FxHashSet<&'a str>,
+    /// Names that nobody declared, reported once.
+    pub(super) unknown: Reported,
+    /// Nodes that the current step waits for, with the calls.
+    pub(super) waiting: Vec<(Key, Place)>,
+    pub(super) failed: bool,
+    /// How far chains of methods in the current step have come, by their first link: a step that
+    /// waited goes on from there.
+    pub(super) progress: FxHashMap<*const Postfix, (usize, Wire)>,
+    /// Expressions are evaluated for other names than the step's own: a fold's body, a default.
+    pub(super) foreign: u32,
+    /// Index of the frame that waits for this one.
+    pub(super) parent: Option<usize>,
+    /// The statement whose value is being made; names made-up resources.
+    pub(super) current: String,
+}
+
+impl<'a> Frame<'a> {
+    pub(super) fn empty() -> Frame<'a> {
+        Frame {
+            key: None,
+            node: None,
+            module: 0,
+            dims: Vec::new(),
+            builder: Builder::default(),
+            scopes: vec![FxHashMap::default()],
+            layers: Vec::new(),
+            base: 0,
+            steps: Vec::new(),
+            order: Vec::new(),
+            bound: FxHashSet::default(),
+            repeated: FxHashSet::default(),
+            doubtful: FxHashSet::default(),
+            unknown: Reported::default(),
+            next: 0,
+            waiting: Vec::new(),
+            failed: false,
+            progress: FxHashMap::default(),
+            foreign: 0,
+            parent: None,
+            current: String::new(),
+        }
+    }
+
+    /// The name of the node whose body is being made, whatever stands inside it.
+    pub(super) fn function_name(&self) -> String {
+        self.builder_of(0).function().name.clone()
+    }
+}
+
+impl<'a> Step<'a> {
+    pub(super) fn names(&self) -> Vec<&'a str> {
+        match self.target {
+            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => {
+                vec![&name.text]
+            }
+            Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
+            Target::Param(_) | Target::Default(_) | Target::Render(_) => vec![self.target.name()],
+        }
+    }
+
+    pub(super) fn span(&self) -> Span {
+        self.value.span
+    }
+}
+
+impl<'a> Target<'a> {
+    pub(super) fn name(&self) -> &'a str {
+        match *self {
+            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => &name.text,
+            Target::Let(Pattern::Record(names, _)) => names.first().map_or("", |name| &name.text),
+            Target::Default(input) => &input.name.text,
+            Target::Render(_) => "value",
+            Target::Param(item) => match &item.kind {
+                ItemKind::Param { name, .. } => &name.text,
+                _ => "",
+            },
+        }
+    }
+}
