@@ -15,6 +15,9 @@
 //!
 //! Nothing here knows a name or a type; that begins in the compiler.
 
+// pest's derive names it.
+extern crate alloc;
+
 mod diagnose;
 mod error;
 mod format;
