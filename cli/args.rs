@@ -164,6 +164,8 @@ pub enum Form {
     Complete,
     /// A function to import or to paste into another shader
     Library,
+    /// A function that takes textures, samplers and params as arguments, and binds nothing
+    Functions,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]

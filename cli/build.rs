@@ -68,6 +68,7 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
         form: match args.form {
             Form::Complete => manifest::Form::Complete,
             Form::Library => manifest::Form::Library,
+            Form::Functions => manifest::Form::Functions,
         },
         group: args.group,
         first_binding: args.first_binding,

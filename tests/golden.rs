@@ -70,7 +70,7 @@ fn wgsl_and_manifest_are_as_recorded() {
 fn every_shader_reads_back_and_samples_explicitly() {
     let library = Library::standard().expect("the library parses");
     for file in files() {
-        for form in [Form::Complete, Form::Library] {
+        for form in [Form::Complete, Form::Library, Form::Functions] {
             let options = Options { form, group: 2, first_binding: 100, ..Options::default() };
             for Pass { wgsl, .. } in compiled(&library, &file, &options).program.passes {
                 assert!(!wgsl.contains("textureSample("), "{}: an implicit level", file.display());

@@ -6,13 +6,14 @@ use crate::Options;
 use crate::graph::{self, Constant, Graph, Operation, ParamId, PassGraph, Scalar, ViewDimension, ViewId};
 use crate::input::is_per_draw;
 use crate::manifest::{
-    self, Form, Gradients, Input, Manifest, Output, Param, Pass, Recipe, Resource, SampleKind, Sampler,
-    Source, Table, Texture, Type, Uniform, Value,
+    self, Argument, Call, Form, Gradients, Input, Manifest, Output, Param, Pass, Recipe, Resource,
+    SampleKind, Sampler, Source, Table, Texture, Type, Uniform, Value,
 };
 use crate::naming::{self, Scope};
 use std::collections::BTreeSet;
 
-/// The params and views that a program reads, in order.
+/// The params and views that are read, in order.
+#[derive(Clone, Default)]
 pub struct Reads {
     /// Of the whole program.
     pub params: BTreeSet<ParamId>,
@@ -20,21 +21,41 @@ pub struct Reads {
     pub views: BTreeSet<ViewId>,
 }
 
-/// What any function of the graph reads.
-pub fn reads(graph: &Graph) -> Reads {
-    let mut reads = Reads { params: BTreeSet::new(), views: BTreeSet::new() };
-    for operation in graph.functions.iter().flat_map(|function| &function.values) {
-        match operation {
-            Operation::Param(id) => {
-                reads.params.insert(*id);
-            }
-            Operation::View(id) => {
-                reads.views.insert(*id);
-            }
-            _ => {}
-        }
+impl Reads {
+    fn extend(&mut self, other: &Reads) {
+        self.params.extend(&other.params);
+        self.views.extend(&other.views);
     }
-    reads
+}
+
+/// What a graph reads: its entry, and all that it calls.
+pub fn reads(graph: &Graph) -> Reads {
+    reads_of_functions(graph).pop().unwrap_or_default()
+}
+
+/// What each function reads, itself and through what it calls.
+pub fn reads_of_functions(graph: &Graph) -> Vec<Reads> {
+    let mut all: Vec<Reads> = Vec::with_capacity(graph.functions.len());
+    for function in &graph.functions {
+        let mut reads = Reads::default();
+        for operation in &function.values {
+            match operation {
+                Operation::Param(id) => {
+                    reads.params.insert(*id);
+                }
+                Operation::View(id) => {
+                    reads.views.insert(*id);
+                }
+                Operation::Call(callee, _) => reads.extend(&all[callee.0 as usize]),
+                Operation::Fold(fold) => {
+                    fold.functions().for_each(|part| reads.extend(&all[part.0 as usize]));
+                }
+                _ => {}
+            }
+        }
+        all.push(reads);
+    }
+    all
 }
 
 /// Everything a host has to know of a program's shaders: bakes with the resources they fill, then
@@ -44,20 +65,17 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
     let entry = graph.function(graph.entry());
     let name = naming::identifier(&entry.name);
     let each: Vec<Reads> = graphs.iter().map(|pass| reads(&pass.graph)).collect();
-    let mut all = Reads { params: BTreeSet::new(), views: BTreeSet::new() };
-    for reads in &each {
-        all.params.extend(&reads.params);
-        all.views.extend(&reads.views);
-    }
+    let mut all = Reads::default();
+    each.iter().for_each(|reads| all.extend(reads));
     let mut block = Block::default();
-    let params = params(graph, &all, &mut block);
+    let params = params(graph, &bound_params(&each, options.form), &mut block);
     let inputs = inputs(entry, options.form, &mut block);
     let mut next = options.first_binding;
     // Global names are public: they are chosen here, apart from each other, and lowering keeps away.
     let mut scope = Scope::default();
     let entry_point = scope.name(&match options.form {
         Form::Complete => format!("{name}_fragment"),
-        Form::Library => name.clone(),
+        Form::Library | Form::Functions => name.clone(),
     });
     let uniform = (block.size > 0).then(|| {
         next += 1;
@@ -87,6 +105,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
                 Some(_) => format!("{}_fragment", naming::identifier(&shader)),
                 None => entry_point.clone(),
             },
+            call: (bake.is_none() && options.form == Form::Functions).then(|| call(graph, function, reads)),
             gradients: gradients(function),
         }
     });
@@ -120,6 +139,31 @@ pub fn of_pass(manifest: &Manifest, index: usize) -> Manifest {
     own
 }
 
+/// The params that shaders read from the uniform block; the last reads its arguments in the
+/// functions form.
+fn bound_params(each: &[Reads], form: Form) -> BTreeSet<ParamId> {
+    let unbound = usize::from(form == Form::Functions);
+    let bound = each.iter().take(each.len().saturating_sub(unbound));
+    bound.flat_map(|reads| reads.params.iter().copied()).collect()
+}
+
+/// How the function of a texture is called; lowering makes the same arguments.
+fn call(graph: &Graph, entry: &graph::Function, reads: &Reads) -> Call {
+    let mut arguments: Vec<Argument> =
+        entry.inputs.iter().map(|slot| Argument::Input(slot.name.clone())).collect();
+    let params = reads.params.iter().map(|id| &graph.params[id.0 as usize]);
+    arguments.extend(params.map(|param| Argument::Param(param.name.clone())));
+    for view in reads.views.iter().map(|id| &graph.views[id.0 as usize]) {
+        arguments.push(Argument::Texture(view.resource, view.field.to_owned()));
+        if view.view.texel == graph::Texel::Sampled {
+            arguments.push(Argument::Sampler(view.resource, view.field.to_owned()));
+        }
+    }
+    let mut members = Scope::default();
+    let members = entry.outputs.iter().map(|(slot, _)| members.name(&slot.name)).collect();
+    Call { arguments, members: (entry.outputs.len() > 1).then_some(members) }
+}
+
 /// The views that a pass reads, as resource and field.
 fn views(graph: &Graph, reads: &Reads) -> Vec<(u32, String)> {
     let views = reads.views.iter().map(|id| &graph.views[id.0 as usize]);
@@ -151,11 +195,11 @@ impl Block {
     }
 }
 
-fn params(graph: &Graph, reads: &Reads, block: &mut Block) -> Vec<Param> {
+fn params(graph: &Graph, bound: &BTreeSet<ParamId>, block: &mut Block) -> Vec<Param> {
     let params = graph.params.iter().enumerate();
     params
         .map(|(i, param)| {
-            let read = reads.params.contains(&ParamId(i as u32));
+            let read = bound.contains(&ParamId(i as u32));
             Param {
                 name: param.name.clone(),
                 label: param.label.clone(),
@@ -172,6 +216,7 @@ fn inputs(entry: &graph::Function, form: Form, block: &mut Block) -> Vec<Input> 
     let mut location = 0;
     let mut source = |slot: &graph::Slot| match form {
         Form::Library => Source::Member,
+        Form::Functions => Source::Argument,
         Form::Complete if is_per_draw(&slot.name) => Source::Uniform(block.add(slot.ty.width())),
         Form::Complete => {
             location += 1;

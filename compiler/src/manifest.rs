@@ -45,6 +45,11 @@ pub enum Form {
     Complete,
     /// A function over global bindings, no entry point.
     Library,
+    /// A function of its arguments alone, with those it calls: no global variable, no binding, no
+    /// entry point. The host binds everything, as it likes, and passes it on (see [`Pass::call`]).
+    /// Bakes are in the complete form all the same: what they bind, and the uniform block with the
+    /// params they read, stands in the manifest.
+    Functions,
 }
 
 /// One shader to run.
@@ -64,11 +69,38 @@ pub struct Pass {
     /// The file with its WGSL, beside the manifest.
     pub shader: String,
     /// `fn NAME(in: NAMEInputs) -> NAMEOutputs` in the library form, the fragment entry point in
-    /// the complete form.
+    /// the complete form, the function to call in the functions form.
     pub entry_point: String,
+    /// How to call the function; in the functions form only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub call: Option<Call>,
     /// `derive`: the shader takes screen derivatives, so it runs in a fragment stage and in uniform
     /// control flow only.
     pub gradients: Gradients,
+}
+
+/// How to call the function of the functions form.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Call {
+    /// What it takes, in order.
+    pub arguments: Vec<Argument>,
+    /// The members of the struct that it returns, one for each output, in order. None where there is
+    /// one output: the function returns its value.
+    pub members: Option<Vec<String>>,
+}
+
+/// An argument of the function of the functions form.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Argument {
+    /// The input of that name.
+    Input(String),
+    /// The param of that name, clamped to its range; a bool is a `bool`.
+    Param(String),
+    /// A texture, by its resource (index) and field.
+    Texture(u32, String),
+    /// The sampler of the texture before it, by the same.
+    Sampler(u32, String),
 }
 
 /// Where screen derivatives come from.
@@ -135,6 +167,8 @@ pub enum Source {
     Uniform(u32),
     /// A member of the inputs' struct (library form).
     Member,
+    /// An argument of the function (functions form).
+    Argument,
 }
 
 /// An output of the texture.
@@ -164,7 +198,8 @@ pub struct Param {
     pub default: Value,
     /// The least and greatest value; whoever writes the block clamps to it.
     pub range: Option<(Value, Value)>,
-    /// Byte offset in the uniform block; none when this program does not read it.
+    /// Byte offset in the uniform block; none when nothing that binds the block reads it (in the
+    /// functions form, bakes alone do).
     pub offset: Option<u32>,
 }
 
@@ -276,7 +311,8 @@ pub enum Encoding {
 pub struct Texture {
     /// The resource's field: `pixels`, `layers`, `table`, `map`.
     pub field: String,
-    /// The variable's name in the WGSL.
+    /// The variable's name in the WGSL. In the functions form it and the binding are those of bakes;
+    /// the texture's own shader knows neither.
     pub name: String,
     /// `@group`
     pub group: u32,

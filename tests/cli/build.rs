@@ -3,7 +3,7 @@
 use crate::workshop::{PLAIN, WRONG, Workshop, examples};
 use std::fs;
 use texgraph_compiler::Manifest;
-use texgraph_compiler::manifest::Form;
+use texgraph_compiler::manifest::{Argument, Form};
 
 const TWO: &str = "let order = permutation(16)\n\ntexture first(uv: vec2) -> (height: float) {\n    height = float(order.at(ifloor(uv.x * 16.0)).x)\n}\n\ntexture second(uv: vec2) -> (color: color) {\n    color = vec4(uv, 0.0, 1.0)\n}\n";
 
@@ -60,6 +60,23 @@ fn the_host_chooses_form_bindings_and_format() {
     assert_eq!(bindings, [(2, 7)]);
     let wgsl = shop.text("first.wgsl");
     assert!(!wgsl.contains("@fragment") && wgsl.contains("@group(2) @binding(7)"), "{wgsl}");
+}
+
+#[test]
+fn functions_bind_nothing_and_say_how_they_are_called() {
+    let shop = Workshop::new(&[("two.tex", TWO)]);
+    assert!(shop.run(&["build", "two.tex", "--form", "functions"]).is_silent());
+    let manifest = Manifest::from_ron(&shop.text("first.ron")).expect("a manifest");
+    assert_eq!((manifest.form, &manifest.uniform), (Form::Functions, &None));
+    let pass = &manifest.passes[0];
+    let call = pass.call.as_ref().expect("a call");
+    let read = manifest.resources.iter().position(|resource| !resource.textures.is_empty());
+    let read = read.expect("a resource with a texture") as u32;
+    let arguments = [Argument::Input("uv".into()), Argument::Texture(read, "table".into())];
+    assert_eq!((call.arguments.as_slice(), &call.members), (arguments.as_slice(), &None));
+    let wgsl = shop.text("first.wgsl");
+    let head = format!("fn {}(uv: vec2<f32>, ", pass.entry_point);
+    assert!(!wgsl.contains('@') && wgsl.contains(&head), "{wgsl}");
 }
 
 #[test]

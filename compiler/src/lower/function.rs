@@ -3,24 +3,29 @@
 use super::body::Body;
 use super::frame::{Argument, Frame, has_sampler};
 use super::types::Types;
-use super::{Callee, Captures, Lowering, Member};
+use super::{Callee, Lowering, Member};
+use crate::contract::Reads;
 use crate::graph::regions::{Region, Regions};
 use crate::graph::{Function, FunctionId, Operation, Type};
 use crate::input::is_per_draw;
+use crate::manifest::Form;
 use crate::naming::{Scope, camel_case};
 use naga::{Expression, Handle, Span};
 
 impl Lowering<'_> {
-    /// Lowers function `index` of the graph; its callees are lowered already.
-    pub(super) fn function(&mut self, index: usize) {
+    /// Lowers function `index` of the graph; its callees are lowered already. `public` is the name
+    /// of what hosts call.
+    pub(super) fn function(&mut self, index: usize, public: &str) {
         let graph = self.graph;
         let source = &graph.functions[index];
-        let captures = self.captures[index].clone();
+        let reads = self.reads[index].clone();
         let is_entry = FunctionId(index as u32) == graph.entry();
-        let wish = if is_entry { "texture" } else { source.name.as_str() };
-        let name = self.module_name(wish);
+        let name = match self.manifest.form {
+            Form::Functions if is_entry => public.to_owned(),
+            _ => self.module_name(if is_entry { "texture" } else { &source.name }),
+        };
         let mut scope = Scope::inside(&self.prefix);
-        let arguments = self.arguments(source, &captures, &mut scope);
+        let arguments = self.arguments(source, &reads, &mut scope);
         let is_struct = source.outputs.len() > 1;
         let result = self.result_type(source, &name);
         let mut function = naga::Function {
@@ -32,7 +37,7 @@ impl Lowering<'_> {
         let mut body = Body::new(&mut function, scope);
         let first = if is_entry { self.draw_rate(source) } else { Vec::new() };
         let mut frame = Frame::new(source, Regions::inside(source, &self.weights, 0, &first));
-        let inputs = self.bind_arguments(&mut body, source, &captures);
+        let inputs = self.bind_arguments(&mut body, source, &reads);
         frame.bind(&inputs);
         self.first(&mut body, &mut frame, &first);
         self.block(&mut body, &mut frame, Region::TOP);
@@ -84,15 +89,15 @@ impl Lowering<'_> {
     fn arguments(
         &mut self,
         source: &Function,
-        captures: &Captures,
+        reads: &Reads,
         scope: &mut Scope,
     ) -> Vec<naga::FunctionArgument> {
         let mut slots: Vec<(String, Type)> = source.inputs.iter().map(|s| (s.name.clone(), s.ty)).collect();
-        for id in &captures.params {
+        for id in &reads.params {
             let param = &self.graph.params[id.0 as usize];
             slots.push((param.name.clone(), param.ty));
         }
-        for id in &captures.views {
+        for id in &reads.views {
             let view = &self.graph.views[id.0 as usize];
             let resource = &self.graph.resources[view.resource as usize];
             slots.push((format!("{}_{}", resource.name, view.field), Type::View(view.view)));
@@ -115,7 +120,7 @@ impl Lowering<'_> {
     }
 
     /// Tells a body where its arguments are; the inputs among them, in order.
-    fn bind_arguments(&mut self, body: &mut Body, source: &Function, captures: &Captures) -> Vec<Argument> {
+    fn bind_arguments(&mut self, body: &mut Body, source: &Function, reads: &Reads) -> Vec<Argument> {
         let mut next = 0;
         let mut argument = |body: &mut Body, ty: Type| {
             let handle = body.add(Expression::FunctionArgument(next));
@@ -129,11 +134,11 @@ impl Lowering<'_> {
         };
         let inputs = source.inputs.iter();
         let inputs = inputs.map(|slot| Argument { handle: argument(body, slot.ty), known: None }).collect();
-        for id in &captures.params {
+        for id in &reads.params {
             let handle = argument(body, self.graph.params[id.0 as usize].ty);
             body.params.insert(*id, handle);
         }
-        for id in &captures.views {
+        for id in &reads.views {
             let handle = argument(body, Type::View(self.graph.views[id.0 as usize].view));
             body.views.insert(*id, handle);
         }

@@ -2,7 +2,8 @@
 //!
 //! Every function of the graph becomes a plain function that touches no global: its inputs, then
 //! the params it reads, then the views it reads with their samplers, itself or through what it
-//! calls. One thin wrapper around the entry reads the globals (see `wrap`).
+//! calls. One thin wrapper around the entry reads the globals (see `wrap`); the functions form does
+//! without.
 
 mod block;
 mod body;
@@ -16,8 +17,9 @@ mod table;
 mod types;
 mod wrap;
 
+use crate::contract::{Reads, reads_of_functions};
 use crate::graph::regions::Weights;
-use crate::graph::{Constant, FunctionId, Graph, Operation, ParamId, ViewId};
+use crate::graph::{Constant, FunctionId, Graph, Operation};
 use crate::intrinsic::Helper;
 use crate::manifest::Manifest;
 use crate::naming::{self, Names, Scope};
@@ -44,13 +46,6 @@ pub fn is_keyword(name: &str) -> bool {
         || naga::keywords::wgsl::BUILTIN_IDENTIFIER_SET.contains(name)
 }
 
-/// What a function reads beside its inputs, in the order of its further arguments.
-#[derive(Default, Clone)]
-struct Captures {
-    params: BTreeSet<ParamId>,
-    views: BTreeSet<ViewId>,
-}
-
 /// A lowered function.
 struct Callee {
     handle: Handle<naga::Function>,
@@ -71,9 +66,9 @@ struct Lowering<'a> {
     scope: Scope,
     prefix: String,
     weights: Weights,
-    /// For each function of the graph.
-    captures: Vec<Captures>,
-    /// The same, so far; folds' steps and conditions stand in place and are none.
+    /// What each function of the graph reads beside its inputs: its further arguments, in order.
+    reads: Vec<Reads>,
+    /// Those lowered so far; folds' steps and conditions stand in place and are none.
     functions: Vec<Option<Callee>>,
     helpers: BTreeMap<Helper, Handle<naga::Function>>,
     tables: FxHashMap<Arc<[Constant]>, Handle<naga::Constant>>,
@@ -92,7 +87,7 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
         scope: Scope::default(),
         prefix: naming::identifier(&manifest.texture),
         weights: Weights::of(graph),
-        captures: captures(graph),
+        reads: reads_of_functions(graph),
         functions: graph.functions.iter().map(|_| None).collect(),
         helpers: BTreeMap::new(),
         tables: FxHashMap::default(),
@@ -108,7 +103,7 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
     }
     let in_place = in_place(graph);
     for i in (0..graph.functions.len()).filter(|i| !in_place.contains(i)) {
-        l.function(i);
+        l.function(i, &entry);
     }
     l.wrap(&entry);
     Lowered { module: l.module, names: l.names, results: l.results }
@@ -156,38 +151,6 @@ impl Lowering<'_> {
             Some(callee) => callee,
             None => unreachable!("a function is lowered before its callers"),
         }
-    }
-}
-
-/// What each function and all it calls read.
-fn captures(graph: &Graph) -> Vec<Captures> {
-    let mut all: Vec<Captures> = Vec::with_capacity(graph.functions.len());
-    for function in &graph.functions {
-        let mut captures = Captures::default();
-        for operation in &function.values {
-            match operation {
-                Operation::Param(id) => {
-                    captures.params.insert(*id);
-                }
-                Operation::View(id) => {
-                    captures.views.insert(*id);
-                }
-                Operation::Call(callee, _) => captures.extend(&all[callee.0 as usize]),
-                Operation::Fold(fold) => {
-                    fold.functions().for_each(|part| captures.extend(&all[part.0 as usize]));
-                }
-                _ => {}
-            }
-        }
-        all.push(captures);
-    }
-    all
-}
-
-impl Captures {
-    fn extend(&mut self, other: &Captures) {
-        self.params.extend(&other.params);
-        self.views.extend(&other.views);
     }
 }
 

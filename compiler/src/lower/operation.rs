@@ -200,7 +200,7 @@ impl Lowering<'_> {
     ) -> Handle<Expression> {
         let operands: Vec<Handle<Expression>> =
             arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
-        let captures = &self.captures[callee.0 as usize];
+        let reads = &self.reads[callee.0 as usize];
         let mut all = Vec::new();
         let mut push = |handle: Handle<Expression>, ty: Type| {
             all.push(handle);
@@ -209,10 +209,10 @@ impl Lowering<'_> {
             }
         };
         operands.into_iter().zip(arguments).for_each(|(handle, v)| push(handle, frame.function.ty(*v)));
-        for id in &captures.params {
+        for id in &reads.params {
             push(body.params[id], Type::FLOAT);
         }
-        for id in &captures.views {
+        for id in &reads.views {
             push(body.views[id], Type::View(self.graph.views[id.0 as usize].view));
         }
         let callee = self.callee(callee);

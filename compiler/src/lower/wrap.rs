@@ -24,11 +24,13 @@ struct UniformBlock {
 impl Lowering<'_> {
     /// Makes the wrapper that the manifest asks for.
     pub(super) fn wrap(&mut self, name: &str) {
+        let wrapper = match self.manifest.form {
+            Form::Complete => Self::entry_point,
+            Form::Library => Self::library,
+            Form::Functions => return,
+        };
         let globals = self.globals();
-        match self.manifest.form {
-            Form::Complete => self.entry_point(name, &globals),
-            Form::Library => self.library(name, &globals),
-        }
+        wrapper(self, name, &globals);
     }
 
     /// Declares the uniform block, the textures and the samplers.
@@ -126,12 +128,12 @@ impl Lowering<'_> {
     ) -> Handle<Expression> {
         let mut arguments = inputs;
         let entry = self.graph.entry();
-        let captures = self.captures[entry.0 as usize].clone();
-        for id in &captures.params {
+        let reads = self.reads[entry.0 as usize].clone();
+        for id in &reads.params {
             let name = self.graph.params[id.0 as usize].name.clone();
             arguments.push(self.member(body, globals, &name));
         }
-        for id in &captures.views {
+        for id in &reads.views {
             let (texture, sampler) = globals.views[id];
             for variable in std::iter::once(texture).chain(sampler) {
                 arguments.push(body.add(Expression::GlobalVariable(variable)));

@@ -22,7 +22,7 @@ const CLIP_BYTES: u64 = 8;
 fn varyings(inputs: &[Input]) -> impl Iterator<Item = (&Input, u32)> {
     inputs.iter().filter_map(|input| match input.source {
         Source::Varying(location) => Some((input, location)),
-        Source::Uniform(_) | Source::Member => None,
+        Source::Uniform(_) | Source::Member | Source::Argument => None,
     })
 }
 

@@ -57,6 +57,7 @@ pub fn program_of(steps: Vec<Step>, resources: Vec<Resource>) -> Program {
             name,
             bake: step.fills,
             params: step.params.iter().map(|name| (*name).to_owned()).collect(),
+            call: None,
             gradients: Gradients::Derive,
             ..template.clone()
         });

@@ -66,6 +66,7 @@ pub fn manifest() -> Manifest {
             params: Vec::new(),
             shader: "test.wgsl".into(),
             entry_point: "main".into(),
+            call: None,
             gradients: Gradients::Derive,
         }],
     }
