@@ -30,7 +30,7 @@ pub fn run(graph: Graph) -> Graph {
             let expanding = Expanding {
                 graph: &graph,
                 made: &made,
-                builder: Builder::new(function.name.clone()),
+                builder: Builder::with_capacity(function.name.clone(), function.values.len()),
                 allowance: &mut allowance,
             };
             let expanded = expanding.run(function);

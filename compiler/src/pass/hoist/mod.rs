@@ -142,7 +142,7 @@ impl<'a> Rewriting<'a> {
             hoisting,
             place,
             function,
-            builder: Builder::new(function.name.clone()),
+            builder: Builder::with_capacity(function.name.clone(), function.values.len()),
             values: Vec::with_capacity(function.values.len()),
             arguments: FxHashMap::default(),
         }
@@ -219,7 +219,7 @@ impl<'a> Rewriting<'a> {
         let moved = self.before(callee, &all);
         all.extend(moved);
         self.arguments.insert(old, all.clone());
-        Operation::Call(callee, all)
+        Operation::Call(callee, all.into())
     }
 
     fn fold(&mut self, fold: &Fold) -> Fold {

@@ -114,7 +114,7 @@ struct Part<'a> {
 
 impl<'a> Part<'a> {
     fn new(function: &'a Function) -> Part<'a> {
-        let mut builder = Builder::new(function.name.clone());
+        let mut builder = Builder::with_capacity(function.name.clone(), function.values.len());
         let inputs = function.inputs.iter().map(|slot| builder.input(slot.name.clone(), slot.ty)).collect();
         Part { function, builder, inputs, values: vec![Value(0); function.values.len()] }
     }
