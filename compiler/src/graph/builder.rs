@@ -1,15 +1,15 @@
 //! Makes functions: every value once, constants folded on the way.
 
+use super::interner::Interner;
 use super::{Constant, Function, FunctionId, Level, Operation, Place, Scalar, Slot, Type, Value, View};
 use crate::intrinsic::{Intrinsic, TO_FLOAT, TO_INT};
-use crate::pass::fold_constants::fold;
-use rustc_hash::FxHashMap;
+use crate::pass::fold_constants::{Folded, fold};
 
 /// A function in the making.
 #[derive(Default)]
 pub struct Builder {
     function: Function,
-    known: FxHashMap<Operation, Value>,
+    known: Interner,
     place: Place,
 }
 
@@ -17,6 +17,15 @@ impl Builder {
     /// Starts a function of that name.
     pub fn new(name: impl Into<String>) -> Builder {
         Builder { function: Function { name: name.into(), ..Function::default() }, ..Builder::default() }
+    }
+
+    /// Starts a function of that name, with room for that many values.
+    pub fn with_capacity(name: impl Into<String>, values: usize) -> Builder {
+        let mut builder = Builder { known: Interner::with_capacity(values), ..Builder::new(name) };
+        builder.function.values.reserve(values);
+        builder.function.types.reserve(values);
+        builder.function.places.reserve(values);
+        builder
     }
 
     /// What has been made so far.
@@ -45,9 +54,9 @@ impl Builder {
     }
 
     /// Calls a value by a name, unless it has one already. Constants and inputs keep theirs.
-    pub fn name(&mut self, value: Value, name: &str) {
+    pub fn name(&mut self, value: Value, name: impl Into<String>) {
         if !matches!(self.function.operation(value), Operation::Constant(_) | Operation::Input(_)) {
-            self.function.names.entry(value).or_insert_with(|| name.to_owned());
+            self.function.names.entry(value).or_insert_with(|| name.into());
         }
     }
 
@@ -71,20 +80,20 @@ impl Builder {
 
     /// An operation of a known type: the one there is already, what it folds to, or a new value.
     pub fn push(&mut self, operation: Operation, ty: Type) -> Value {
-        if let Some(value) = self.known.get(&operation) {
-            return *value;
-        }
-        if let Some(folded) = fold(&self.function, &operation) {
-            return match folded {
-                crate::pass::fold_constants::Folded::Value(value) => value,
-                crate::pass::fold_constants::Folded::Operation(simpler) => self.push(simpler, ty),
-            };
+        let vacant = match self.known.find(&operation, &self.function.values) {
+            Ok(value) => return value,
+            Err(vacant) => vacant,
+        };
+        match fold(&self.function, &operation) {
+            Some(Folded::Value(value)) => return value,
+            Some(Folded::Operation(simpler)) => return self.push(simpler, ty),
+            None => {}
         }
         let value = Value(self.function.values.len() as u32);
-        self.function.values.push(operation.clone());
+        self.function.values.push(operation);
         self.function.types.push(ty);
         self.function.places.push(self.place);
-        self.known.insert(operation, value);
+        self.known.insert(vacant, value);
         value
     }
 
@@ -108,17 +117,24 @@ impl Builder {
 
     /// An intrinsic of arguments that have the types it asks for.
     pub fn builtin(&mut self, intrinsic: Intrinsic, arguments: &[Value]) -> Value {
-        let operation = Operation::Builtin(intrinsic, arguments.to_vec());
-        if let Some(value) = self.known.get(&operation) {
-            return *value;
+        let ty = self.result(intrinsic, arguments);
+        self.push(Operation::Builtin(intrinsic, arguments.into()), ty)
+    }
+
+    /// The type of an intrinsic's value.
+    fn result(&self, intrinsic: Intrinsic, arguments: &[Value]) -> Type {
+        let width = arguments.first().map_or(1, |v| self.ty(*v).width());
+        match intrinsic.row().value.component() {
+            Some(scalar) => Type::Vector(scalar, width),
+            None => {
+                // The value defines the intrinsic, its type included.
+                let zero = |v: &Value| {
+                    Constant::zero(self.ty(*v).scalar().unwrap_or(Scalar::Int), self.ty(*v).width())
+                };
+                let zeros: Vec<Constant> = arguments.iter().map(zero).collect();
+                intrinsic.evaluate(&zeros).ty()
+            }
         }
-        // The value defines the intrinsic, its type included.
-        let zeros: Vec<Constant> = arguments
-            .iter()
-            .map(|v| Constant::zero(self.ty(*v).scalar().unwrap_or(Scalar::Int), self.ty(*v).width()))
-            .collect();
-        let ty = intrinsic.evaluate(&zeros).ty();
-        self.push(operation, ty)
     }
 
     /// A vector from scalars; a single one is itself.
@@ -128,7 +144,7 @@ impl Builder {
             [first, ..] => {
                 let scalar = self.ty(*first).scalar().unwrap_or(Scalar::Float);
                 let ty = Type::Vector(scalar, scalars.len() as u8);
-                self.push(Operation::Compose(scalars.to_vec()), ty)
+                self.push(Operation::Compose(scalars.into()), ty)
             }
             [] => self.constant(Constant::floats(&[0.0])),
         }
@@ -188,7 +204,7 @@ impl Builder {
     pub fn call(&mut self, id: FunctionId, callee: &Function, arguments: Vec<Value>) -> Vec<Value> {
         let types: Vec<Type> = callee.outputs.iter().map(|(slot, _)| slot.ty).collect();
         let first = types.first().copied().unwrap_or(Type::FLOAT);
-        let call = self.push(Operation::Call(id, arguments), first);
+        let call = self.push(Operation::Call(id, arguments.into()), first);
         types.iter().enumerate().map(|(i, ty)| self.push(Operation::Output(call, i as u32), *ty)).collect()
     }
 

@@ -9,6 +9,7 @@ mod builder;
 mod constant;
 mod dump;
 pub mod evaluate;
+mod interner;
 pub mod regions;
 
 pub use builder::Builder;
@@ -140,6 +141,9 @@ pub enum Axis {
     Y,
 }
 
+/// Any number of operands; up to four lie in the operation itself.
+pub type Operands = smallvec::SmallVec<[Value; 4]>;
+
 /// An operation over earlier values.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
@@ -152,9 +156,9 @@ pub enum Operation {
     /// A texture of the program.
     View(ViewId),
     /// An intrinsic; arguments have exactly the types that its row asks for.
-    Builtin(Intrinsic, Vec<Value>),
+    Builtin(Intrinsic, Operands),
     /// A vector from scalars of one type, as many as it has components.
-    Compose(Vec<Value>),
+    Compose(Operands),
     /// A component of a vector.
     Extract(Value, u8),
     /// The second where the first (a `bool`) holds, else the third; both of one type.
@@ -184,7 +188,7 @@ pub enum Operation {
     /// An entry of a constant table, two or more of one type. The index is an int, clamped.
     Lookup(Arc<[Constant]>, Value),
     /// All outputs of a function. Only [`Operation::Output`] may read it.
-    Call(FunctionId, Vec<Value>),
+    Call(FunctionId, Operands),
     /// All accumulators after the last step. Only [`Operation::Output`] may read it.
     Fold(Box<Fold>),
     /// One output of a call, or one accumulator of a fold.
@@ -227,13 +231,16 @@ impl Fold {
     }
 
     /// The same fold over other operands.
-    pub fn map_operands(&self, mut f: impl FnMut(Value) -> Value) -> Fold {
-        Fold {
-            starts: self.starts.iter().map(|v| f(*v)).collect(),
-            steps: f(self.steps),
-            captures: self.captures.iter().map(|v| f(*v)).collect(),
-            ..*self
-        }
+    pub fn map_operands(&self, f: impl FnMut(Value) -> Value) -> Fold {
+        let mut copy = self.clone();
+        copy.replace_operands(f);
+        copy
+    }
+
+    /// Puts another value in the place of each operand.
+    pub fn replace_operands(&mut self, mut f: impl FnMut(Value) -> Value) {
+        let operands = self.starts.iter_mut().chain([&mut self.steps]).chain(&mut self.captures);
+        operands.for_each(|v| *v = f(*v));
     }
 }
 
@@ -282,35 +289,41 @@ impl Operation {
     }
 
     /// The same operation over other operands.
-    pub fn map_operands(&self, mut f: impl FnMut(Value) -> Value) -> Operation {
-        let all =
-            |vs: &[Value], f: &mut dyn FnMut(Value) -> Value| vs.iter().map(|v| f(*v)).collect::<Vec<_>>();
+    pub fn map_operands(&self, f: impl FnMut(Value) -> Value) -> Operation {
+        let mut copy = self.clone();
+        copy.replace_operands(f);
+        copy
+    }
+
+    /// Puts another value in the place of each operand.
+    pub fn replace_operands(&mut self, mut f: impl FnMut(Value) -> Value) {
+        let mut replace = |v: &mut Value| *v = f(*v);
         match self {
-            Operation::Constant(_) | Operation::Input(_) | Operation::Param(_) | Operation::View(_) => {
-                self.clone()
+            Operation::Constant(_) | Operation::Input(_) | Operation::Param(_) | Operation::View(_) => {}
+            Operation::Builtin(_, operands) | Operation::Compose(operands) | Operation::Call(_, operands) => {
+                operands.iter_mut().for_each(replace);
             }
-            Operation::Builtin(i, vs) => Operation::Builtin(*i, all(vs, &mut f)),
-            Operation::Compose(vs) => Operation::Compose(all(vs, &mut f)),
-            Operation::Call(id, vs) => Operation::Call(*id, all(vs, &mut f)),
-            Operation::Fold(fold) => Operation::Fold(Box::new(fold.map_operands(f))),
-            Operation::Lookup(table, v) => Operation::Lookup(Arc::clone(table), f(*v)),
-            Operation::Extract(v, i) => Operation::Extract(f(*v), *i),
-            Operation::Size(v) => Operation::Size(f(*v)),
-            Operation::Output(v, i) => Operation::Output(f(*v), *i),
-            Operation::Derivative(v, axis) => Operation::Derivative(f(*v), *axis),
-            Operation::Select(a, b, c) => Operation::Select(f(*a), f(*b), f(*c)),
-            Operation::Sample { view, coordinate, layer, level } => Operation::Sample {
-                view: f(*view),
-                coordinate: f(*coordinate),
-                layer: layer.map(&mut f),
-                level: match level {
-                    Level::Auto => Level::Auto,
-                    Level::Gradient(x, y) => Level::Gradient(f(*x), f(*y)),
-                    Level::Level(l) => Level::Level(f(*l)),
-                },
-            },
+            Operation::Fold(fold) => fold.replace_operands(f),
+            Operation::Extract(v, _)
+            | Operation::Size(v)
+            | Operation::Lookup(_, v)
+            | Operation::Output(v, _)
+            | Operation::Derivative(v, _) => replace(v),
+            Operation::Select(a, b, c) => [a, b, c].into_iter().for_each(replace),
+            Operation::Sample { view, coordinate, layer, level } => {
+                replace(view);
+                replace(coordinate);
+                layer.iter_mut().for_each(&mut replace);
+                match level {
+                    Level::Auto => {}
+                    Level::Gradient(x, y) => [x, y].into_iter().for_each(replace),
+                    Level::Level(l) => replace(l),
+                }
+            }
             Operation::Texel { view, index, layer } => {
-                Operation::Texel { view: f(*view), index: f(*index), layer: layer.map(&mut f) }
+                replace(view);
+                replace(index);
+                layer.iter_mut().for_each(replace);
             }
         }
     }

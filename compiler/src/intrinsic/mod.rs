@@ -17,7 +17,7 @@ mod value;
 pub use derivative::{Tangents, zero};
 pub use table::*;
 
-use crate::graph::{Builder, Constant, Value};
+use crate::graph::{Builder, Constant, Scalar, Value};
 
 /// An intrinsic: the index of its row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -68,6 +68,24 @@ pub enum Evaluate {
     Bool2(fn(bool, bool) -> bool),
     /// Of whole arguments.
     Whole(fn(&[Constant]) -> Constant),
+}
+
+impl Evaluate {
+    /// What a component of the value is; as many as the first argument has. None for `Whole`.
+    pub fn component(&self) -> Option<Scalar> {
+        match self {
+            Evaluate::Float1(_) | Evaluate::Float2(_) | Evaluate::Float3(_) | Evaluate::IntToFloat(_) => {
+                Some(Scalar::Float)
+            }
+            Evaluate::Int1(_) | Evaluate::Int2(_) | Evaluate::Int3(_) | Evaluate::FloatToInt(_) => {
+                Some(Scalar::Int)
+            }
+            Evaluate::CompareFloat(_) | Evaluate::CompareInt(_) | Evaluate::Bool1(_) | Evaluate::Bool2(_) => {
+                Some(Scalar::Bool)
+            }
+            Evaluate::Whole(_) => None,
+        }
+    }
 }
 
 /// How an intrinsic changes with its arguments.

@@ -75,7 +75,9 @@ fn identity(
     match intrinsic {
         ADD | ADD_INT if is(0, 0) => keep(1),
         ADD | ADD_INT | SUBTRACT | SUBTRACT_INT if is(1, 0) => keep(0),
-        SUBTRACT if is(0, 0) => Some(Folded::Operation(Operation::Builtin(NEGATE, vec![arguments[1]]))),
+        SUBTRACT if is(0, 0) => {
+            Some(Folded::Operation(Operation::Builtin(NEGATE, [arguments[1]].as_slice().into())))
+        }
         MULTIPLY | MULTIPLY_INT if is(0, 0) || is(1, 1) => keep(0),
         MULTIPLY | MULTIPLY_INT if is(1, 0) || is(0, 1) => keep(1),
         DIVIDE | RAW_DIVIDE if is(0, 0) || is(1, 1) => keep(0),

@@ -8,6 +8,7 @@ pub mod hoist;
 pub mod inline;
 mod liveness;
 pub mod remove_dead;
+mod taken;
 
 use crate::graph::Graph;
 

@@ -2,7 +2,9 @@
 //! no caller reads, accumulators and captures of folds, functions that nobody calls.
 
 use super::liveness::Liveness;
-use crate::graph::{Builder, Fold, Function, FunctionId, Graph, Operation, Value};
+use super::taken::Taken;
+use crate::graph::{Builder, Function, FunctionId, Graph, Operation, Value};
+use rustc_hash::FxHashMap;
 
 /// Keeps what the entry's outputs need. The entry keeps its inputs: they are the contract.
 pub fn run(graph: Graph) -> Graph {
@@ -10,16 +12,19 @@ pub fn run(graph: Graph) -> Graph {
     if let Some(inputs) = live.inputs.last_mut() {
         inputs.fill(true);
     }
-    let places: Vec<Vec<u32>> = live.outputs.iter().map(|live| places(live)).collect();
     let entry = graph.functions.len().saturating_sub(1);
-    let mut ids = vec![None; graph.functions.len()];
+    let mut removing = Removing {
+        places: live.outputs.iter().map(|live| places(live)).collect(),
+        ids: vec![None; graph.functions.len()],
+        live,
+        values: Vec::new(),
+        inner: FxHashMap::default(),
+    };
     let mut functions = Vec::new();
-    for i in 0..graph.functions.len() {
-        if i == entry || live.outputs[i].contains(&true) {
-            let values = Vec::with_capacity(graph.functions[i].values.len());
-            let removing = Removing { graph: &graph, live: &live, places: &places, ids: &ids, values };
-            functions.push(removing.run(i));
-            ids[i] = Some(FunctionId(functions.len() as u32 - 1));
+    for (i, function) in graph.functions.into_iter().enumerate() {
+        if i == entry || removing.live.outputs[i].contains(&true) {
+            removing.ids[i] = Some(FunctionId(functions.len() as u32));
+            functions.push(removing.function(i, function));
         }
     }
     Graph { functions, ..graph }
@@ -36,33 +41,36 @@ fn places(live: &[bool]) -> Vec<u32> {
     live.iter().map(|live| place(live)).collect()
 }
 
-/// A function being made without what is dead.
-struct Removing<'a> {
-    graph: &'a Graph,
-    live: &'a Liveness,
-    places: &'a [Vec<u32>],
-    ids: &'a [Option<FunctionId>],
+/// Makes functions without what is dead.
+struct Removing {
+    live: Liveness,
+    /// For each function where its outputs come to stand.
+    places: Vec<Vec<u32>>,
+    ids: Vec<Option<FunctionId>>,
+    /// The new values of the function being made.
     values: Vec<Value>,
+    /// Whose outputs its calls and folds have.
+    inner: FxHashMap<Value, FunctionId>,
 }
 
-impl Removing<'_> {
-    fn run(mut self, place: usize) -> Function {
-        let function = &self.graph.functions[place];
-        let mut builder = Builder::new(function.name.clone());
-        let inputs: Vec<Value> = function
-            .inputs
-            .iter()
-            .zip(&self.live.inputs[place])
-            .map(|(slot, live)| if *live { builder.input(slot.name.clone(), slot.ty) } else { Value(0) })
-            .collect();
-        for (old, operation) in function.iter() {
-            let value = match operation {
-                _ if !self.live.is_live(place, old) => Value(0),
-                Operation::Input(i) => inputs.get(*i as usize).copied().unwrap_or(Value(0)),
-                _ => {
-                    builder.set_place(function.places[old.0 as usize]);
-                    let value = builder.push(self.adapted(function, operation), function.ty(old));
-                    if let Some(name) = function.names.get(&old) {
+impl Removing {
+    fn function(&mut self, place: usize, function: Function) -> Function {
+        let taken = Taken::new(function);
+        let mut builder = Builder::with_capacity(taken.name, taken.values.len());
+        let mut inputs = Vec::with_capacity(taken.inputs.len());
+        for (slot, live) in taken.inputs.into_iter().zip(&self.live.inputs[place]) {
+            inputs.push(if *live { builder.input(slot.name, slot.ty) } else { Value(0) });
+        }
+        self.values.clear();
+        self.inner.clear();
+        for part in taken.values {
+            let value = match part.operation {
+                _ if !self.live.is_live(place, part.old) => Value(0),
+                Operation::Input(i) => inputs.get(i as usize).copied().unwrap_or(Value(0)),
+                operation => {
+                    builder.set_place(part.place);
+                    let value = builder.push(self.adapted(part.old, operation), part.ty);
+                    if let Some(name) = part.name {
                         builder.name(value, name);
                     }
                     value
@@ -70,9 +78,9 @@ impl Removing<'_> {
             };
             self.values.push(value);
         }
-        for ((slot, value), live) in function.outputs.iter().zip(&self.live.outputs[place]) {
+        for ((slot, value), live) in taken.outputs.into_iter().zip(&self.live.outputs[place]) {
             if *live {
-                builder.output(slot.name.clone(), self.values[value.0 as usize]);
+                builder.output(slot.name, self.values[value.0 as usize]);
             }
         }
         builder.finish()
@@ -82,40 +90,36 @@ impl Removing<'_> {
         self.ids.get(old.0 as usize).copied().flatten().unwrap_or(old)
     }
 
-    /// The new values of those operands that go to live inputs.
-    fn kept(&self, operands: &[Value], live: &[bool]) -> Vec<Value> {
-        let live = operands.iter().zip(live).filter(|(_, live)| **live);
-        live.map(|(operand, _)| self.values[operand.0 as usize]).collect()
-    }
-
     /// An operation over new values, without what is dead.
-    fn adapted(&self, function: &Function, operation: &Operation) -> Operation {
-        match operation {
+    fn adapted(&mut self, old: Value, mut operation: Operation) -> Operation {
+        if let Operation::Output(of, i) = &mut operation
+            && let Some(inner) = self.inner.get(of)
+        {
+            *i = self.places[inner.0 as usize].get(*i as usize).copied().unwrap_or(0);
+        }
+        operation.replace_operands(|v| self.values[v.0 as usize]);
+        match &mut operation {
             Operation::Call(callee, arguments) => {
-                let live = &self.live.inputs[callee.0 as usize];
-                Operation::Call(self.id(*callee), self.kept(arguments, live))
+                self.inner.insert(old, *callee);
+                *arguments = kept(arguments, &self.live.inputs[callee.0 as usize]).collect();
+                *callee = self.id(*callee);
             }
             Operation::Fold(fold) => {
+                self.inner.insert(old, fold.body);
                 let live = &self.live.inputs[fold.body.0 as usize];
-                Operation::Fold(Box::new(Fold {
-                    body: self.id(fold.body),
-                    condition: fold.condition.map(|condition| self.id(condition)),
-                    starts: self.kept(&fold.starts, live),
-                    steps: self.values[fold.steps.0 as usize],
-                    most: fold.most,
-                    captures: self.kept(&fold.captures, live.get(fold.starts.len() + 1..).unwrap_or(&[])),
-                }))
+                fold.captures =
+                    kept(&fold.captures, live.get(fold.starts.len() + 1..).unwrap_or(&[])).collect();
+                fold.starts = kept(&fold.starts, live).collect();
+                fold.body = self.id(fold.body);
+                fold.condition = fold.condition.map(|condition| self.id(condition));
             }
-            Operation::Output(of, i) => {
-                let inner = match function.operation(*of) {
-                    Operation::Call(callee, _) => *callee,
-                    Operation::Fold(fold) => fold.body,
-                    _ => return operation.clone(),
-                };
-                let place = self.places[inner.0 as usize].get(*i as usize).copied().unwrap_or(0);
-                Operation::Output(self.values[of.0 as usize], place)
-            }
-            _ => operation.map_operands(|v| self.values[v.0 as usize]),
+            _ => {}
         }
+        operation
     }
+}
+
+/// Those operands that go to live inputs.
+fn kept(operands: &[Value], live: &[bool]) -> impl Iterator<Item = Value> {
+    operands.iter().zip(live).filter(|(_, live)| **live).map(|(operand, _)| *operand)
 }

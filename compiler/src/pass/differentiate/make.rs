@@ -53,7 +53,7 @@ impl<'a> Making<'a> {
             demand,
             requests,
             made,
-            builder: Builder::new(function.name.clone()),
+            builder: Builder::with_capacity(function.name.clone(), function.values.len()),
             inputs: Vec::new(),
             input_tangents: Vec::new(),
             values: Vec::with_capacity(function.values.len()),
@@ -175,7 +175,7 @@ impl<'a> Making<'a> {
     fn call(&mut self, old: Value, callee: FunctionId, arguments: &[Value]) -> Operation {
         let found = self.demand.inner.get(&old).and_then(|request| self.find(callee, request));
         let Some((variant, made)) = found else { return Operation::Constant(Constant::floats(&[0.0])) };
-        Operation::Call(made.id, self.with_tangents(arguments, 0, Layout::CALLED, variant))
+        Operation::Call(made.id, self.with_tangents(arguments, 0, Layout::CALLED, variant).into())
     }
 
     fn fold(&mut self, old: Value, fold: &Fold) -> Operation {

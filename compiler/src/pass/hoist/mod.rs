@@ -32,25 +32,55 @@ const MOST_MOVED: usize = 100_000;
 const MOST_INPUTS: usize = 64;
 
 /// Moves work out of folds, and what is the same for a whole draw to the top.
-pub fn run(graph: Graph) -> Graph {
+pub fn run(mut graph: Graph) -> Graph {
     let live = Liveness::of(&graph);
     let mut hoisting = Hoisting {
-        graph: &graph,
         weights: Weights::of(&graph),
         per_draw: rate::per_draw(&graph, &live),
         live: &live,
         functions: Vec::with_capacity(graph.functions.len()),
         before: Vec::with_capacity(graph.functions.len()),
+        hands_through: Vec::with_capacity(graph.functions.len()),
         allowance: MOST_MOVED,
     };
     for place in 0..graph.functions.len() {
-        hoisting.function(place);
+        let role = Use::of(&graph, &live, place);
+        let function = std::mem::take(&mut graph.functions[place]);
+        hoisting.function(place, function, &role);
     }
     Graph { functions: hoisting.functions, ..graph }
 }
 
+/// How a function is used.
+enum Use {
+    /// Not by others: the entry, or a function that is dead.
+    Alone,
+    Called,
+    /// By a fold: how many inputs change from step to step, and what goes with it if it is a body
+    /// or a condition.
+    Folded {
+        carried: usize,
+        partner: Option<usize>,
+    },
+}
+
+impl Use {
+    fn of(graph: &Graph, live: &Liveness, place: usize) -> Use {
+        let Some(site) = live.live_sites(place).next() else { return Use::Alone };
+        match (graph.functions[site.caller].operation(site.value), site.role) {
+            (Operation::Fold(fold), Role::Body) => {
+                let partner = fold.condition.map(|condition| condition.0 as usize);
+                Use::Folded { carried: fold.starts.len() + 1, partner }
+            }
+            (Operation::Fold(fold), Role::Condition) => {
+                Use::Folded { carried: fold.starts.len(), partner: Some(fold.body.0 as usize) }
+            }
+            _ => Use::Called,
+        }
+    }
+}
+
 struct Hoisting<'a> {
-    graph: &'a Graph,
     weights: Weights,
     live: &'a Liveness,
     /// For each function which inputs are the same for a whole draw.
@@ -60,21 +90,33 @@ struct Hoisting<'a> {
     /// What goes before each, if anything does: it takes the same inputs (those that the function
     /// had at first) and gives what the rest takes in addition.
     before: Vec<Option<Function>>,
+    /// Which of them have an output that is one of their inputs or a constant.
+    hands_through: Vec<bool>,
     allowance: usize,
 }
 
 impl Hoisting<'_> {
-    fn function(&mut self, place: usize) {
-        let function = Rewriting::new(self, place).run();
-        let partner = self.partner(place).filter(|partner| *partner < place);
+    fn function(&mut self, place: usize, function: Function, role: &Use) {
+        let outside = self.outside(place, &function, role);
+        let function = match self.is_concerned(&function, role, &outside) {
+            true => Rewriting::new(self, place, &function).run(),
+            false => function,
+        };
+        let partner = match role {
+            Use::Folded { partner, .. } => partner.filter(|partner| *partner < place),
+            _ => None,
+        };
         let padding = partner.map(|partner| self.moved(partner)).unwrap_or_default();
-        let (mut rest, before) = match self.split(place, &function, &padding) {
+        let (mut rest, before) = match self.split(place, &function, role, &outside, &padding) {
             Some((before, rest)) => (rest, Some(before)),
             None => (function, None),
         };
         if before.is_none() {
             rest.inputs.extend(padding);
         }
+        let simple =
+            |value: &Value| matches!(rest.operation(*value), Operation::Input(_) | Operation::Constant(_));
+        self.hands_through.push(rest.outputs.iter().any(|(_, value)| simple(value)));
         self.functions.push(rest);
         self.before.push(before);
         if let Some(partner) = partner {
@@ -84,14 +126,25 @@ impl Hoisting<'_> {
         }
     }
 
-    /// The condition that goes with a body, or the body that goes with a condition.
-    fn partner(&self, place: usize) -> Option<usize> {
-        let site = self.live.live_sites(place).next()?;
-        match (self.graph.functions[site.caller].operation(site.value), site.role) {
-            (Operation::Fold(fold), Role::Body) => fold.condition.map(|condition| condition.0 as usize),
-            (Operation::Fold(fold), Role::Condition) => Some(fold.body.0 as usize),
-            _ => None,
+    /// Which inputs come from where work can go.
+    fn outside(&self, place: usize, function: &Function, role: &Use) -> Vec<bool> {
+        match role {
+            Use::Alone => Vec::new(),
+            Use::Called => self.per_draw[place].clone(),
+            Use::Folded { carried, .. } => (0..function.inputs.len()).map(|i| i >= *carried).collect(),
         }
+    }
+
+    /// Whether a function is worth looking into: it has work that could go, or uses functions that
+    /// had.
+    fn is_concerned(&self, function: &Function, role: &Use, outside: &[bool]) -> bool {
+        let is_changed = |id: &FunctionId| self.before[id.0 as usize].is_some();
+        let uses = function.values.iter().any(|operation| match operation {
+            Operation::Call(callee, _) => is_changed(callee) || self.hands_through[callee.0 as usize],
+            Operation::Fold(fold) => fold.functions().any(|id| is_changed(&id)),
+            _ => false,
+        });
+        uses || !matches!(role, Use::Alone) && split::has_work(function, outside)
     }
 
     /// What goes before a function gives these.
@@ -101,17 +154,20 @@ impl Hoisting<'_> {
     }
 
     /// What goes before a function and what is left of it, if anything can go.
-    fn split(&mut self, place: usize, function: &Function, padding: &[Slot]) -> Option<(Function, Function)> {
-        let site = self.live.live_sites(place).next()?;
-        let per_draw = &self.per_draw[place];
-        let (outside, most) = match (self.graph.functions[site.caller].operation(site.value), site.role) {
-            (Operation::Fold(fold), role) => {
-                let steps = fold.starts.len() + usize::from(role == Role::Body);
-                ((0..function.inputs.len()).map(|i| i >= steps).collect(), usize::MAX)
-            }
-            _ => (per_draw.clone(), MOST_INPUTS.saturating_sub(function.inputs.len())),
+    fn split(
+        &mut self,
+        place: usize,
+        function: &Function,
+        role: &Use,
+        outside: &[bool],
+        padding: &[Slot],
+    ) -> Option<(Function, Function)> {
+        let most = match role {
+            Use::Alone => return None,
+            Use::Called => MOST_INPUTS.saturating_sub(function.inputs.len()),
+            Use::Folded { .. } => usize::MAX,
         };
-        let split = Split::of(function, &outside, per_draw, &self.weights, most)?;
+        let split = Split::of(function, outside, &self.per_draw[place], &self.weights, most)?;
         let before = split.before();
         let cost = before.values.len() * self.live.live_sites(place).count();
         if cost > self.allowance {
@@ -136,13 +192,12 @@ struct Rewriting<'a> {
 }
 
 impl<'a> Rewriting<'a> {
-    fn new(hoisting: &'a Hoisting<'a>, place: usize) -> Rewriting<'a> {
-        let function = &hoisting.graph.functions[place];
+    fn new(hoisting: &'a Hoisting<'a>, place: usize, function: &'a Function) -> Rewriting<'a> {
         Rewriting {
             hoisting,
             place,
             function,
-            builder: Builder::new(function.name.clone()),
+            builder: Builder::with_capacity(function.name.clone(), function.values.len()),
             values: Vec::with_capacity(function.values.len()),
             arguments: FxHashMap::default(),
         }
@@ -219,7 +274,7 @@ impl<'a> Rewriting<'a> {
         let moved = self.before(callee, &all);
         all.extend(moved);
         self.arguments.insert(old, all.clone());
-        Operation::Call(callee, all)
+        Operation::Call(callee, all.into())
     }
 
     fn fold(&mut self, fold: &Fold) -> Fold {

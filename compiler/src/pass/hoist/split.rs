@@ -23,12 +23,12 @@ impl<'a> Split<'a> {
         weights: &Weights,
         most: usize,
     ) -> Option<Split<'a>> {
+        if !has_work(function, outside) {
+            return None;
+        }
         let mut movable = fixed(function, outside);
         let trivial = trivial(function);
         let work = |v: Value| !trivial[v.0 as usize];
-        if !function.iter().any(|(v, _)| movable[v.0 as usize] && work(v)) {
-            return None;
-        }
         let per_draw = fixed(function, per_draw);
         let regions = Regions::of(function, weights);
         for (value, operation) in function.iter() {
@@ -114,7 +114,7 @@ struct Part<'a> {
 
 impl<'a> Part<'a> {
     fn new(function: &'a Function) -> Part<'a> {
-        let mut builder = Builder::new(function.name.clone());
+        let mut builder = Builder::with_capacity(function.name.clone(), function.values.len());
         let inputs = function.inputs.iter().map(|slot| builder.input(slot.name.clone(), slot.ty)).collect();
         Part { function, builder, inputs, values: vec![Value(0); function.values.len()] }
     }
@@ -139,6 +139,11 @@ impl<'a> Part<'a> {
             self.values[old.0 as usize] = value;
         }
     }
+}
+
+/// Whether anything that is work is made of these inputs alone.
+pub fn has_work(function: &Function, outside: &[bool]) -> bool {
+    fixed(function, outside).into_iter().zip(trivial(function)).any(|(fixed, trivial)| fixed && !trivial)
 }
 
 /// Which values are no work: leaves, their components, and vectors of such.
