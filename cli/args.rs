@@ -49,6 +49,17 @@ how often a value is computed: when loading, once a draw, once a pixel. Without 
 Graphviz goes to standard output; it has no bound, a picture shows 400 blocks at most.
 Only the syntax has to be right: what is declared nowhere is drawn all the same.";
 
+const COST: &str = "\
+Examples:
+  texgraph cost tiling.tex
+  texgraph cost landscape.tex:landscape --max-samples 8    exit code 1 if a pixel may read more
+  texgraph cost tiling.tex --format json
+Everything is read off the compiled graph; nothing is rendered. The worst case takes every loop to
+its bound and of every branch the dearer arm, each figure on its own. The typical case has params at
+their defaults; of a branch that they do not decide each arm counts half, and a loop with a `while`
+takes half of its bound. An `if` without samples, fetches or loops in its arms computes both.
+Bytes of tables need the pictures; without them they are unknown, which is no error.";
+
 const FMT: &str = "\
 Examples:
   texgraph fmt tiling.tex          rewrites the file if its layout is not the canonical one
@@ -77,6 +88,8 @@ pub enum Command {
     Build(Build),
     /// Render a texture to a PNG picture
     Render(Render),
+    /// Count what a texture takes: samples, arithmetic, loops, bytes
+    Cost(Cost),
     /// Draw the node diagram of a texture or a node
     Graph(Graph),
     /// Put .tex files into their canonical layout
@@ -92,6 +105,7 @@ impl Command {
             Command::Check(Check { common, .. })
             | Command::Build(Build { common, .. })
             | Command::Render(Render { common, .. })
+            | Command::Cost(Cost { common, .. })
             | Command::Graph(Graph { common, .. }) => common.message_format,
             Command::Fmt(_) | Command::Explain(_) => MessageFormat::Human,
         }
@@ -223,6 +237,31 @@ pub enum Backend {
     Gpu,
     /// The CPU
     Cpu,
+}
+
+#[derive(clap::Args)]
+#[command(after_help = COST)]
+pub struct Cost {
+    /// The .tex file, with the name of one texture if not all of it are meant
+    #[arg(value_name = "FILE[:TEXTURE]")]
+    pub file: OsString,
+    /// Samples and fetches of a pixel at most, in the worst case
+    #[arg(long, value_name = "N")]
+    pub max_samples: Option<u32>,
+    /// How the figures are printed
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub format: CostFormat,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum CostFormat {
+    /// Tables for people
+    #[default]
+    Text,
+    /// One JSON array, an object for each texture
+    Json,
 }
 
 #[derive(clap::Args)]

@@ -28,7 +28,7 @@ pub fn run(args: &Build, report: &mut Report) -> Result<(), Problem> {
     let program = Program::open(&library, &args.file, args.common.allow_outside)?;
     let mut made = Vec::new();
     let mut shown = Vec::new();
-    for texture in wanted(args, &program)? {
+    for texture in program.wanted(args.texture.clone())? {
         match make(args, &program, texture) {
             Ok(files) => made.extend(files),
             Err(problem) => show(report, &mut shown, problem),
@@ -38,17 +38,6 @@ pub fn run(args: &Build, report: &mut Report) -> Result<(), Problem> {
         write(args, made)?;
     }
     Ok(())
-}
-
-/// The named texture, or all of a file that is right as a whole. A file without textures wants the
-/// one that it does not have, and the compiler says so.
-fn wanted(args: &Build, program: &Program<'_>) -> Result<Vec<Option<String>>, Problem> {
-    if args.texture.is_some() {
-        return Ok(vec![args.texture.clone()]);
-    }
-    program.check()?;
-    let textures = program.textures()?;
-    Ok(if textures.is_empty() { vec![None] } else { textures.into_iter().map(Some).collect() })
 }
 
 /// Shows what has not been shown for an earlier texture: two that read one picture share its errors.

@@ -14,6 +14,7 @@
 mod args;
 mod build;
 mod check;
+mod cost;
 mod explain;
 mod fmt;
 mod graph;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args, &mut report),
         Command::Build(args) => build::run(args, &mut report),
         Command::Render(args) => render::run(args),
+        Command::Cost(args) => cost::run(args, &mut report),
         Command::Graph(args) => graph::run(args),
         Command::Fmt(args) => fmt::run(args, &mut report),
         Command::Explain(args) => explain::run(args),

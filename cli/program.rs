@@ -55,6 +55,20 @@ impl<'a> Program<'a> {
         Ok(texgraph_compiler::textures(self.library, &self.path, &self.project)?)
     }
 
+    /// The named texture, or all of a file that is right as a whole. A file without textures wants
+    /// the one that it does not have, and the compiler says so.
+    ///
+    /// # Errors
+    /// None is named, and the file is wrong.
+    pub fn wanted(&self, texture: Option<String>) -> Result<Vec<Option<String>>, Problem> {
+        if texture.is_some() {
+            return Ok(vec![texture]);
+        }
+        self.check()?;
+        let textures = self.textures()?;
+        Ok(if textures.is_empty() { vec![None] } else { textures.into_iter().map(Some).collect() })
+    }
+
     /// Compiles a texture.
     ///
     /// # Errors

@@ -6,6 +6,8 @@
 mod build;
 #[path = "cli/check.rs"]
 mod check;
+#[path = "cli/cost.rs"]
+mod cost;
 #[path = "cli/fmt.rs"]
 mod fmt;
 #[path = "cli/graph.rs"]

@@ -12,6 +12,7 @@ mod advice;
 mod check;
 pub mod color;
 pub mod contract;
+pub mod cost;
 pub mod diagnostic;
 pub mod diagram;
 pub mod emit;

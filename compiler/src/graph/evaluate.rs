@@ -358,8 +358,8 @@ impl<'a> Machine<'a, '_> {
     }
 }
 
-/// An operation of known operands, given in order.
-fn applied(operation: &Operation, numbers: &[Constant]) -> Option<Constant> {
+/// An operation of known operands, given in order; none for one that is more than its operands.
+pub(crate) fn applied(operation: &Operation, numbers: &[Constant]) -> Option<Constant> {
     let first = numbers.first();
     match operation {
         Operation::Builtin(intrinsic, _) => Some(intrinsic.evaluate(numbers)),

@@ -13,6 +13,7 @@
 //! regions share takes no longer than that, and the whole is linear.
 
 use super::{Function, FunctionId, Graph, Operation, Value};
+use crate::input::is_per_draw;
 use rustc_hash::FxHashMap;
 
 /// Blocks inside each other at most, loops among them; choices that are deeper select.
@@ -177,6 +178,22 @@ fn live(function: &Function) -> Vec<bool> {
         }
     }
     live
+}
+
+/// Which values of an entry depend on nothing but params, inputs that are the same for a draw, and
+/// numbers. They stand before all others. What is worth a branch stays where it is needed.
+pub fn draw_rate(entry: &Function, weights: &Weights) -> Vec<bool> {
+    let mut draw: Vec<bool> = Vec::with_capacity(entry.values.len());
+    for operation in &entry.values {
+        let mut all = !weights.is_heavy(operation);
+        operation.for_operands(|v| all &= draw[v.0 as usize]);
+        draw.push(match operation {
+            Operation::Input(i) => entry.inputs.get(*i as usize).is_some_and(|slot| is_per_draw(&slot.name)),
+            Operation::Derivative(..) => false,
+            _ => all,
+        });
+    }
+    draw
 }
 
 fn is_marked(marked: &[bool], value: Value) -> bool {

@@ -5,9 +5,8 @@ use super::frame::{Argument, Frame, has_sampler};
 use super::types::Types;
 use super::{Callee, Lowering, Member};
 use crate::contract::Reads;
-use crate::graph::regions::{Region, Regions};
-use crate::graph::{Function, FunctionId, Operation, Type};
-use crate::input::is_per_draw;
+use crate::graph::regions::{Region, Regions, draw_rate};
+use crate::graph::{Function, FunctionId, Type};
 use crate::manifest::Form;
 use crate::naming::{Scope, camel_case};
 use naga::{Expression, Handle, Span};
@@ -35,7 +34,7 @@ impl Lowering<'_> {
             ..Default::default()
         };
         let mut body = Body::new(&mut function, scope);
-        let first = if is_entry { self.draw_rate(source) } else { Vec::new() };
+        let first = if is_entry { draw_rate(source, &self.weights) } else { Vec::new() };
         let mut frame = Frame::new(source, Regions::inside(source, &self.weights, 0, &first));
         let inputs = self.bind_arguments(&mut body, source, &reads);
         frame.bind(&inputs);
@@ -50,24 +49,6 @@ impl Lowering<'_> {
         self.results.push(body.finish(value));
         let handle = self.module.functions.append(function, Span::UNDEFINED);
         self.functions[index] = Some(Callee { handle, is_struct, name: source.name.clone() });
-    }
-
-    /// Which values depend on nothing but params, inputs that are the same for a draw, and numbers.
-    /// They stand before all others. What is worth a branch stays where it is needed.
-    fn draw_rate(&self, source: &Function) -> Vec<bool> {
-        let mut draw: Vec<bool> = Vec::with_capacity(source.values.len());
-        for operation in &source.values {
-            let mut all = !self.weights.is_heavy(operation);
-            operation.for_operands(|v| all &= draw[v.0 as usize]);
-            draw.push(match operation {
-                Operation::Input(i) => {
-                    source.inputs.get(*i as usize).is_some_and(|slot| is_per_draw(&slot.name))
-                }
-                Operation::Derivative(..) => false,
-                _ => all,
-            });
-        }
-        draw
     }
 
     /// The type of a function's result: its only output, or a struct of all.
