@@ -15,6 +15,7 @@ impl Look<'_, '_> {
         if self.code == "E0213" {
             self.take_apart(diagnostic);
         }
+        self.in_order(diagnostic);
         let mut values = vec![value(self.names, self.span())];
         values.extend(diagnostic.related.iter().map(|(place, _)| place.span));
         if self.code == "E0219" {
@@ -49,6 +50,21 @@ impl Look<'_, '_> {
         let (Some(node), Some(help)) = (node, &diagnostic.help) else { return };
         let names: Vec<&str> = node.outputs.iter().map(|output| output.name.text.as_str()).collect();
         diagnostic.help = Some(format!("{help}, or take it apart: `let ({}) = …`", names.join(", ")));
+    }
+
+    /// Names that take outputs apart in another order than they come in.
+    fn in_order(&self, diagnostic: &mut Diagnostic) {
+        let Some(part) = self.names.meaning(self.span()).filter(|binding| binding.is_part) else { return };
+        let node = self.names.call(part.value).and_then(|site| self.texts.node(&site.call.name.text));
+        let outputs = node.map_or(&[][..], |node| &node.outputs);
+        let outputs: Vec<&str> = outputs.iter().map(|output| output.name.text.as_str()).collect();
+        let parts = self.names.bindings.iter().filter(|other| other.is_part && other.value == part.value);
+        let parts: Vec<&str> = parts.map(|part| part.name.text.as_str()).collect();
+        if parts.len() == outputs.len() && parts != outputs && parts.iter().all(|part| outputs.contains(part))
+        {
+            let help = format!("outputs are taken in their order: `let ({}) = …`", outputs.join(", "));
+            (diagnostic.help, diagnostic.suggestion) = (Some(help), None);
+        }
     }
 
     /// Where a value comes from: the declaration of the one name that it is made of, or the output of
