@@ -51,6 +51,7 @@ pub(crate) fn explain(scan: &Scan<'_>, tokens: Range<usize>, failure: Failure) -
         .or_else(|| place.literal())
         .or_else(|| place.group())
         .or_else(|| place.bracket())
+        .or_else(|| place.not_in_words())
         .or_else(|| place.space())
         .or_else(|| place.lambda())
         .or_else(|| place.missing_else())
@@ -108,7 +109,9 @@ impl<'a, 's> Place<'a, 's> {
     /// Characters that begin no token.
     fn character(&self) -> Guess {
         if self.text == ";" {
-            return self.here(Kind::Semicolon);
+            let open = self.open_bracket();
+            let in_brackets = open.is_some_and(|open| self.scan.text(open) != "{");
+            return self.here(Kind::Semicolon { in_brackets });
         }
         let character = self.text.chars().next()?;
         match self.token.kind {
@@ -157,8 +160,10 @@ impl<'a, 's> Place<'a, 's> {
 
     fn unexpected(&self) -> SyntaxError {
         let error = self.found(self.expected.to_vec(), self.habit());
-        let is_item = self.expects("an item") && is_first_of_line(self.scan, self.index);
-        if is_item { error } else { error.related(self.before(), "after this") }
+        // What stands on the lines before is complete.
+        let begins = self.expects("an item") || self.expects("an assignment");
+        let is_apart = begins && is_first_of_line(self.scan, self.index);
+        if is_apart { error } else { error.related(self.before(), "after this") }
     }
 
     /// What stands before this token: one token, or those that belong together.

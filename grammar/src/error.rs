@@ -139,8 +139,8 @@ pub enum SyntaxErrorKind {
     },
     /// A statement that assigns nothing.
     NotAnAssignment {
-        /// Whether it is a `return`.
-        is_return: bool,
+        /// What stands there instead.
+        found: Statement,
     },
     /// `f(a: 1, 2)`; the span is the positional argument.
     PositionalAfterNamed {
@@ -148,12 +148,26 @@ pub enum SyntaxErrorKind {
         named: String,
     },
     /// A `;`.
-    Semicolon,
+    Semicolon {
+        /// Whether it stands between arguments, inputs or elements.
+        in_brackets: bool,
+    },
     /// pest accepted what the tree cannot hold: a bug of this crate.
     Grammar {
         /// What was missing.
         missing: &'static str,
     },
+}
+
+/// What stands where an assignment should.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Statement {
+    /// `return x`
+    Return,
+    /// `color.r = x`
+    Component,
+    /// An expression.
+    Expression,
 }
 
 impl SyntaxError {
@@ -192,7 +206,7 @@ impl SyntaxError {
             Kind::SpaceBeforeBracket { .. } => "E0019",
             Kind::NotAnAssignment { .. } => "E0020",
             Kind::PositionalAfterNamed { .. } => "E0021",
-            Kind::Semicolon => "E0022",
+            Kind::Semicolon { .. } => "E0022",
             Kind::Grammar { .. } => "E0049",
         }
     }
@@ -236,12 +250,15 @@ impl SyntaxError {
             Kind::SpaceBeforeBracket { name, bracket } => {
                 format!("there is a space between `{}` and its `{bracket}`", shorten(name))
             }
-            Kind::NotAnAssignment { is_return: true } => "there is no `return`".into(),
+            Kind::NotAnAssignment { found: Statement::Return } => "there is no `return`".into(),
+            Kind::NotAnAssignment { found: Statement::Component } => {
+                "a component can't be assigned on its own".into()
+            }
             Kind::NotAnAssignment { .. } => "this statement assigns nothing".into(),
             Kind::PositionalAfterNamed { named } => {
                 format!("an argument without a name follows the named argument `{named}`")
             }
-            Kind::Semicolon => "there are no semicolons".into(),
+            Kind::Semicolon { .. } => "there are no semicolons".into(),
             Kind::Grammar { missing } => {
                 format!("this is a bug in texgraph's grammar: {missing} is missing")
             }
@@ -272,7 +289,8 @@ impl SyntaxError {
             Kind::SpaceBeforeBracket { .. } => "must touch the name".into(),
             Kind::NotAnAssignment { .. } => "not an assignment".into(),
             Kind::PositionalAfterNamed { .. } => "has no name".into(),
-            Kind::Semicolon => "remove this".into(),
+            Kind::Semicolon { in_brackets: true } => "a `,` stands here".into(),
+            Kind::Semicolon { .. } => "remove this".into(),
             Kind::Grammar { .. } => "please report this text".into(),
         }
     }
@@ -299,10 +317,15 @@ impl SyntaxError {
             Kind::SpaceBeforeBracket { name, bracket } => {
                 return Some(format!("write `{name}{bracket}`"));
             }
-            Kind::NotAnAssignment { is_return: true } => "assign to an output: `color = …`",
+            Kind::NotAnAssignment { found: Statement::Return } => "assign to an output: `color = …`",
+            Kind::NotAnAssignment { found: Statement::Component } => {
+                "a value is assigned whole: `color = vec4(rgb, a)`"
+            }
             Kind::NotAnAssignment { .. } => "a body holds only `let name = …` and `output = …`",
             Kind::PositionalAfterNamed { .. } => "arguments go by position first, then by name",
-            Kind::Semicolon => "statements need no `;`: remove it",
+            Kind::Semicolon { in_brackets: true } => "what stands in brackets is separated by `,`",
+            Kind::Semicolon { .. } => "statements need no `;`: remove it",
+            Kind::UnexpectedEnd { expected } if expected.contains(&"`..`") => RANGE,
             Kind::NumberTooLarge { .. }
             | Kind::UnexpectedEnd { .. }
             | Kind::Unclosed { .. }
@@ -320,6 +343,9 @@ impl fmt::Display for SyntaxError {
 }
 
 impl std::error::Error for SyntaxError {}
+
+/// How a range is written.
+pub(crate) const RANGE: &str = "a range is `0.0..1.0`, or `0..=8` with its end";
 
 /// What the habits of other languages mean here.
 fn character_help(character: char) -> Option<String> {

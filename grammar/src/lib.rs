@@ -27,7 +27,7 @@ mod recover;
 mod scan;
 pub mod syntax;
 
-pub use error::{SYNTAX_CODES, SyntaxError, SyntaxErrorKind};
+pub use error::{SYNTAX_CODES, Statement, SyntaxError, SyntaxErrorKind};
 pub use format::format;
 pub use nesting::MAX_NESTING;
 pub use parse::{parse, parse_signature};

@@ -26,9 +26,29 @@ impl Loader for Folder {
     fn load(&self, path: &str) -> Result<String, String> {
         match &self.main {
             Some((name, text)) if path == name => Ok(text.clone()),
-            _ => fs::read_to_string(self.path.join(path)).map_err(|_| "there is no such file".to_owned()),
+            _ => text_of(&self.path.join(path)).map_err(|_| "there is no such file".to_owned()),
         }
     }
+}
+
+/// The text of a file as it is checked.
+pub fn text_of(path: &Path) -> std::io::Result<String> {
+    fs::read_to_string(path).map(|text| repeated(&text))
+}
+
+/// A text whose first line says how often the line that ends in `// repeated` stands there; each
+/// time its number is put in for `#`.
+fn repeated(text: &str) -> String {
+    let count = text.strip_prefix("// repeat: ").and_then(|rest| rest.lines().next()?.parse().ok());
+    let Some(count) = count else { return text.to_owned() };
+    let line = |line: &str| match line.strip_suffix("// repeated") {
+        Some(line) => {
+            let line = line.trim_end();
+            (0..count).map(|i: usize| line.replace('#', &i.to_string()) + "\n").collect()
+        }
+        None => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
 }
 
 /// The names of the files of a folder with an ending, in order.
@@ -111,7 +131,8 @@ impl Case {
         let loader = Folder { path: self.folder(), main: None };
         let main = format!("{}.tex", self.path());
         let failure = match self.head.strip_prefix("// ask: ") {
-            Some("load") => load(&main, &loader),
+            Some("load") => load(&main, &loader, &root().join(&main)),
+            Some(wish) if wish.starts_with("large file ") => load_large(&main, &loader, &wish[11..]),
             Some(wish) => compile(&LIBRARY, &main, &loader, &asked(wish)).err(),
             None => check(&LIBRARY, &main, &loader).err(),
         };
@@ -120,14 +141,24 @@ impl Case {
 }
 
 /// What only loading the resources finds.
-fn load(main: &str, loader: &Folder) -> Option<Failure> {
+fn load(main: &str, loader: &Folder, file: &Path) -> Option<Failure> {
     let Compiled { mut program, sources } = match compile(&LIBRARY, main, loader, &Options::default()) {
         Ok(compiled) => compiled,
         Err(failure) => return Some(failure),
     };
-    let project = Project::new(&root().join(main), false);
+    let project = Project::new(file, false);
     let diagnostics = resource::load(&mut program, &project).err()?;
     Some(Failure { sources, diagnostics })
+}
+
+/// The same beside a file of more than half a gibibyte. A file with a hole takes no room on the disk.
+fn load_large(main: &str, loader: &Folder, name: &str) -> Option<Failure> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let large = fs::File::create(folder.path().join(name)).expect("a file");
+    large.set_len((512 << 20) + 1).expect("a hole");
+    let copy = folder.path().join("main.tex");
+    fs::copy(root().join(main), &copy).expect("copied");
+    load(main, loader, &copy)
 }
 
 fn asked(wish: &str) -> Options {
@@ -173,20 +204,6 @@ pub fn codes_in_use() -> BTreeSet<String> {
 
 fn is_code(word: &str) -> bool {
     word.len() == 5 && word.starts_with('E') && word[1..].bytes().all(|byte| byte.is_ascii_digit())
-}
-
-/// What no file of a few lines can show: one step beyond each limit, with its code.
-pub fn generated() -> Vec<(&'static str, String)> {
-    let texture =
-        |body: &str| format!("texture t(uv: vec2) -> (color: color) {{\n    color = vec4({body})\n}}\n");
-    let shade = "node shade(x: float, k: float) -> (value: float) {\n    value = x * k\n}\n\n";
-    let calls: Vec<String> = (0..=4_096).map(|i| format!("shade(uv.x, {i}.5)")).collect();
-    let terms: Vec<String> = (2..70_000).map(|i| format!("k*{i}")).collect();
-    vec![
-        ("E0001", format!("//{}", "x".repeat(texgraph_grammar::MAX_BYTES))),
-        ("E0401", format!("{shade}{}", texture(&calls.join(" + ")))),
-        ("E0402", shade.replace("x * k", &terms.join("+"))),
-    ]
 }
 
 /// Texts to break: the examples and every error file.

@@ -3,8 +3,9 @@
 //! An error that is left out becomes a place of the one that stays, so that nothing is hidden.
 
 use super::names::{Kind, Names, Site, contains, whole};
-use super::{MOST, Texts};
-use crate::diagnostic::{Diagnostic, Place};
+use super::{Look, MOST, Texts};
+use crate::diagnostic::{Diagnostic, Place, constructors};
+use crate::resource::{KINDS, LATER};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::hash::Hash;
 use texgraph_grammar::syntax::{Node, Span};
@@ -22,27 +23,41 @@ const OF_TYPES: [&str; 11] =
 /// Places that are shown of one error, besides the first, because others follow from it.
 const MORE: usize = 3;
 
+/// The endings of files that programs read.
+const ENDINGS: [&str; 10] =
+    [".bmp", ".dds", ".exr", ".hdr", ".jpeg", ".jpg", ".ktx2", ".png", ".ron", ".tga"];
+
 /// The errors without those that follow from others.
 pub(super) fn leave_out(texts: &Texts, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let diagnostics = quote_paths(texts, diagnostics);
     let diagnostics = without_calls_of_broken_nodes(texts, diagnostics);
-    let diagnostics = first_of_each(diagnostics, |diagnostic| unknown_name(texts, diagnostic));
+    let records = misused_records(texts, &diagnostics);
+    let diagnostics = first_of_each(diagnostics, "and this is one of its outputs", |diagnostic| {
+        misused_record(&texts.look(diagnostic)?, &records)
+    });
+    let diagnostics =
+        first_of_each(diagnostics, "and here", |diagnostic| unknown_name(&texts.look(diagnostic)?));
     let heads = wrong_heads(texts, &diagnostics);
-    let diagnostics = first_of_each(diagnostics, |diagnostic| {
-        called(texts, diagnostic).filter(|head| heads.contains(head))
+    let diagnostics = first_of_each(diagnostics, "and here", |diagnostic| {
+        called(&texts.look(diagnostic)?).filter(|head| heads.contains(head))
     });
     let wires = doubtful_wires(texts, &diagnostics);
-    first_of_each(diagnostics, |diagnostic| wires_of(texts, diagnostic).find(|wire| wires.contains(wire)))
+    first_of_each(diagnostics, "and here", |diagnostic| {
+        wires_of(&texts.look(diagnostic)?).into_iter().find(|wire| wires.contains(wire))
+    })
 }
 
-/// Keeps the first error of each group; the places of the others are shown with it.
+/// Keeps the first error of each group; the places of the others are shown with it. Only the first
+/// errors are looked at.
 fn first_of_each<K: Eq + Hash>(
     diagnostics: Vec<Diagnostic>,
+    label: &str,
     group: impl Fn(&Diagnostic) -> Option<K>,
 ) -> Vec<Diagnostic> {
     let mut kept: Vec<Diagnostic> = Vec::new();
     let mut seen: FxHashMap<K, usize> = FxHashMap::default();
-    for diagnostic in diagnostics {
-        let Some(key) = group(&diagnostic) else {
+    for (i, diagnostic) in diagnostics.into_iter().enumerate() {
+        let Some(key) = (i < MOST).then(|| group(&diagnostic)).flatten() else {
             kept.push(diagnostic);
             continue;
         };
@@ -50,7 +65,7 @@ fn first_of_each<K: Eq + Hash>(
         match kept.get_mut(first) {
             None => kept.push(diagnostic),
             Some(first) if first.related.len() < MORE => {
-                first.related.push((diagnostic.place, "and here".to_owned()));
+                first.related.push((diagnostic.place, label.to_owned()));
             }
             Some(_) => {}
         }
@@ -58,16 +73,66 @@ fn first_of_each<K: Eq + Hash>(
     kept
 }
 
+/// A path without quotes reads as divisions and fields of names: all that is said of them is one
+/// error.
+fn quote_paths(texts: &Texts, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let is_constructor = |name: &str| KINDS.iter().any(|kind| kind.name == name) || LATER.contains(&name);
+    let mut quoted: FxHashSet<Place> = FxHashSet::default();
+    let mut kept = Vec::new();
+    for (i, diagnostic) in diagnostics.into_iter().enumerate() {
+        let look = texts.look(&diagnostic).filter(|_| i < MOST);
+        let path = look.and_then(|look| {
+            let span = look.names.argument_around(look.span(), is_constructor)?;
+            let is_path = |text: &&str| {
+                let is_plain = text.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c));
+                is_plain && ENDINGS.iter().any(|ending| text.ends_with(ending))
+            };
+            Some((Place { span, ..look.place }, Some(look.text(span)).filter(is_path)?))
+        });
+        match path {
+            Some((place, path)) if quoted.insert(place) => {
+                kept.push(constructors::unquoted_path(place, path))
+            }
+            Some(_) => {}
+            None => kept.push(diagnostic),
+        }
+    }
+    kept
+}
+
+/// The wires of several outputs that are read as if they had one.
+fn misused_records(texts: &Texts, diagnostics: &[Diagnostic]) -> FxHashSet<Span> {
+    let misused = diagnostics.iter().take(MOST).filter(|diagnostic| diagnostic.code == "E0213");
+    let records = misused.filter_map(|diagnostic| {
+        let look = texts.look(diagnostic)?;
+        look.names.meaning(look.span()).map(|record| record.name.span)
+    });
+    records.collect()
+}
+
+/// The misused wire that an error is about: it is the wire, or the name of one of its outputs.
+fn misused_record(look: &Look, records: &FxHashSet<Span>) -> Option<(u32, Span)> {
+    let record = match look.code {
+        "E0213" => look.names.meaning(look.span())?.name.span,
+        "E0101" | "E0110" if !records.is_empty() => {
+            let mut of_name = look.records_with(look.text(look.span()));
+            of_name.find(|(record, _)| records.contains(&record.name.span))?.0.name.span
+        }
+        _ => return None,
+    };
+    Some((look.place.file, record))
+}
+
 /// A name that nobody declared is one error in a file, however many nodes read it; a dimension is
 /// one in its node.
-fn unknown_name(texts: &Texts, diagnostic: &Diagnostic) -> Option<(u32, Span, String)> {
-    let place = diagnostic.place;
-    match diagnostic.code {
+fn unknown_name<'a>(look: &Look<'_, 'a>) -> Option<(u32, Span, &'a str)> {
+    let file = look.place.file;
+    match look.code {
         "E0220" => {
-            let node = texts.names(diagnostic)?.node(place.span)?;
-            Some((place.file, node.name.span, diagnostic.message.clone()))
+            let dimension = look.text(look.span()).split(['<', '>']).nth(1)?;
+            Some((file, look.names.node(look.span())?.name.span, dimension))
         }
-        code if UNKNOWN.contains(&code) => Some((place.file, Span::default(), texts.text(place).to_owned())),
+        code if UNKNOWN.contains(&code) => Some((file, Span::default(), look.text(look.span()))),
         _ => None,
     }
 }
@@ -81,43 +146,40 @@ fn without_calls_of_broken_nodes(texts: &Texts, mut diagnostics: Vec<Diagnostic>
         errors.get(first).is_some_and(|error| error.file == file && contains(node, error.span))
     };
     diagnostics.retain(|diagnostic| {
-        let place = diagnostic.place;
-        let node = callee(texts, diagnostic).map(whole);
-        node.is_none_or(|node| contains(node, place.span) || !is_broken(place.file, node))
+        let Some(look) = texts.look(diagnostic) else { return true };
+        let node = callee(&look).map(whole);
+        node.is_none_or(|node| contains(node, look.span()) || !is_broken(look.place.file, node))
     });
     diagnostics
 }
 
 /// The node of the same file whose call an error is about.
-fn callee<'t>(texts: &Texts<'t>, diagnostic: &Diagnostic) -> Option<&'t Node> {
-    let names = texts.names(diagnostic)?;
-    names.callee(site(names, diagnostic)?)
+fn callee<'a>(look: &Look<'_, 'a>) -> Option<&'a Node> {
+    look.names.callee(site(look)?)
 }
 
 /// The call that an error is about: of an argument's value or name, of what takes its outputs
 /// apart, or of the call itself.
-pub(super) fn site<'t, 'a>(names: &'t Names<'a>, diagnostic: &Diagnostic) -> Option<&'t Site<'a>> {
-    let place = diagnostic.place.span;
-    let argument = || names.argument(place).map(|(site, _)| site);
-    match diagnostic.code {
-        "E0205" => names.call(place),
-        "E0212" => names.call(names.taken_apart(place)?),
-        code if OF_CALLS.contains(&code) => argument().or_else(|| names.call(place)),
+pub(super) fn site<'t, 'a>(look: &Look<'t, 'a>) -> Option<&'t Site<'a>> {
+    let argument = || look.names.argument(look.span()).map(|(site, _)| site);
+    match look.code {
+        "E0205" => look.names.call(look.span()),
+        "E0212" => look.names.call(look.names.taken_apart(look.span())?),
+        code if OF_CALLS.contains(&code) => argument().or_else(|| look.names.call(look.span())),
         _ => None,
     }
 }
 
 /// The same by the place of its name.
-fn called(texts: &Texts, diagnostic: &Diagnostic) -> Option<(u32, Span)> {
-    callee(texts, diagnostic).map(|node| (diagnostic.place.file, node.name.span))
+fn called(look: &Look) -> Option<(u32, Span)> {
+    callee(look).map(|node| (look.place.file, node.name.span))
 }
 
 /// The nodes that are called several times, and never rightly.
 fn wrong_heads(texts: &Texts, diagnostics: &[Diagnostic]) -> FxHashSet<(u32, Span)> {
     let mut wrong: FxHashMap<(u32, Span), FxHashSet<Span>> = FxHashMap::default();
-    for diagnostic in diagnostics.iter().take(MOST) {
-        let site = texts.names(diagnostic).and_then(|names| site(names, diagnostic));
-        if let (Some(head), Some(site)) = (called(texts, diagnostic), site) {
+    for look in diagnostics.iter().take(MOST).filter_map(|diagnostic| texts.look(diagnostic)) {
+        if let (Some(head), Some(site)) = (called(&look), site(&look)) {
             wrong.entry(head).or_default().insert(site.call.name.span);
         }
     }
@@ -129,23 +191,25 @@ fn wrong_heads(texts: &Texts, diagnostics: &[Diagnostic]) -> FxHashSet<(u32, Spa
 
 /// The wires that values of a wrong type are made of, and of nothing else.
 fn doubtful_wires(texts: &Texts, diagnostics: &[Diagnostic]) -> FxHashSet<(u32, usize)> {
-    let wires = diagnostics.iter().take(MOST).filter_map(|diagnostic| {
-        let mut wires = wires_of(texts, diagnostic);
-        wires.next().filter(|_| wires.next().is_none())
+    let looks = diagnostics.iter().take(MOST).filter_map(|diagnostic| texts.look(diagnostic));
+    let wires = looks.filter_map(|look| match wires_of(&look).as_slice() {
+        [only] => Some(*only),
+        _ => None,
     });
     wires.collect()
 }
 
 /// The wires that a value of a wrong type is made of.
-fn wires_of<'t>(texts: &'t Texts, diagnostic: &Diagnostic) -> impl Iterator<Item = (u32, usize)> + use<'t> {
-    let file = diagnostic.place.file;
-    let names = texts.names(diagnostic).filter(|_| OF_TYPES.contains(&diagnostic.code));
-    let read = names.map_or(Vec::new(), |names| names.read_within(value(names, diagnostic.place.span)));
-    let has_type = move |wire: &usize| {
-        let kind = names.and_then(|names| names.bindings.get(*wire)).map(|binding| binding.kind);
+fn wires_of(look: &Look) -> Vec<(u32, usize)> {
+    if !OF_TYPES.contains(&look.code) {
+        return Vec::new();
+    }
+    let has_type = |wire: &usize| {
+        let kind = look.names.bindings.get(*wire).map(|binding| binding.kind);
         kind.is_some_and(|kind| !matches!(kind, Kind::Alias | Kind::Node | Kind::Texture | Kind::Dimension))
     };
-    read.into_iter().filter(has_type).map(move |wire| (file, wire))
+    let read = look.names.read_within(value(look.names, look.span()));
+    read.into_iter().filter(has_type).map(|wire| (look.place.file, wire)).collect()
 }
 
 /// The value that an error of types is about.

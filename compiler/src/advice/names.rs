@@ -41,6 +41,8 @@ pub struct Binding<'a> {
     pub statement: Span,
     /// The value of its `let`; empty where there is none.
     pub value: Span,
+    /// It is one of several names that take the value apart.
+    pub is_part: bool,
     /// How often it is read or called.
     pub reads: u32,
 }
@@ -105,12 +107,13 @@ struct At {
     scope: Span,
     statement: Span,
     value: Span,
+    is_part: bool,
 }
 
 impl At {
     /// Bound by a head, where it can be read in a stretch of the text.
     fn head(kind: Kind, scope: Span) -> At {
-        At { kind, scope, statement: Span::default(), value: Span::default() }
+        At { kind, scope, statement: Span::default(), value: Span::default(), is_part: false }
     }
 }
 
@@ -154,6 +157,13 @@ impl<'a> Names<'a> {
     pub fn callee(&self, site: &Site<'a>) -> Option<&'a Node> {
         let named = self.nodes.get(site.call.name.text.as_str()).copied().flatten();
         named.filter(|_| site.base != Base::File).map(|(_, node)| node)
+    }
+
+    /// The argument that a place lies in, of a call that is asked for.
+    pub fn argument_around(&self, place: Span, is_meant: impl Fn(&str) -> bool) -> Option<Span> {
+        let calls = self.sites.iter().filter(|site| is_meant(&site.call.name.text));
+        let mut values = calls.flat_map(|site| &site.call.arguments).map(|argument| argument.value.span);
+        values.find(|value| contains(*value, place))
     }
 
     /// How often the node of this file whose name stands here is called in this file.
@@ -231,8 +241,8 @@ impl<'a> Names<'a> {
     }
 
     fn push(&mut self, name: &'a Name, span: Span, at: At) -> usize {
-        let At { kind, scope, statement, value } = at;
-        self.bindings.push(Binding { name, span, kind, scope, statement, value, reads: 0 });
+        let At { kind, scope, statement, value, is_part } = at;
+        self.bindings.push(Binding { name, span, kind, scope, statement, value, is_part, reads: 0 });
         self.bindings.len() - 1
     }
 
@@ -282,7 +292,8 @@ impl<'a> Names<'a> {
                 Pattern::Name(name) => self.bind(name, name.span, at),
                 Pattern::Record(names, place) => {
                     self.taken_apart.insert(*place, value.span);
-                    names.iter().for_each(|name| self.bind(name, name.span, at));
+                    let part = At { is_part: true, ..at };
+                    names.iter().for_each(|name| self.bind(name, name.span, part));
                 }
             }
         }

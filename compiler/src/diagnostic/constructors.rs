@@ -1,6 +1,6 @@
 //! Sentences about constructors' arguments: what can be told without opening a file.
 
-use super::{Diagnostic, Place};
+use super::{Diagnostic, Place, Suggestion};
 
 /// A number that an argument can't have.
 pub fn out_of_bounds(place: Place, what: &str, found: i32, low: i32, high: i32) -> Diagnostic {
@@ -45,6 +45,13 @@ pub fn ragged_rows(place: Place) -> Diagnostic {
 /// An argument that is not a value of the kind wanted.
 pub fn wrong_argument(place: Place, input: &str, wanted: &str) -> Diagnostic {
     Diagnostic::new("E0556", place, format!("`{input}` takes {wanted}"), "this does not fit")
+}
+
+/// A path that stands without quotes.
+pub fn unquoted_path(place: Place, path: &str) -> Diagnostic {
+    Diagnostic::new("E0556", place, "a path stands between quotes", "not a string")
+        .help(format!("write `\"{path}\"`"))
+        .suggest(Some(Suggestion::replace(place, format!("\"{path}\"")).sure()))
 }
 
 /// A constructor's argument that is not known before the program runs.

@@ -27,7 +27,8 @@ pub fn error(file: u32, error: &SyntaxError) -> Diagnostic {
 fn edit(place: Place, kind: &SyntaxErrorKind) -> Option<Suggestion> {
     let replace = |text: String| Some(Suggestion::replace(place, text));
     match kind {
-        SyntaxErrorKind::Semicolon => replace(String::new()).map(Suggestion::sure),
+        SyntaxErrorKind::Semicolon { in_brackets: true } => replace(",".to_owned()).map(Suggestion::sure),
+        SyntaxErrorKind::Semicolon { .. } => replace(String::new()).map(Suggestion::sure),
         SyntaxErrorKind::SpaceBeforeBracket { name, bracket } => {
             replace(format!("{name}{bracket}")).map(Suggestion::sure)
         }
@@ -36,6 +37,7 @@ fn edit(place: Place, kind: &SyntaxErrorKind) -> Option<Suggestion> {
         SyntaxErrorKind::Unexpected { found, .. } => match found.trim_matches('`') {
             "and" => replace("&&".to_owned()),
             "or" => replace("||".to_owned()),
+            "not" => replace("!".to_owned()),
             _ => None,
         },
         _ => None,

@@ -31,7 +31,8 @@ fn pair(open: &str) -> (char, char) {
 }
 
 impl Place<'_, '_> {
-    fn open_bracket(&self) -> Option<Token> {
+    /// The innermost bracket that is open here.
+    pub(super) fn open_bracket(&self) -> Option<Token> {
         open_bracket(self.scan, self.tokens.start..self.index)
     }
 

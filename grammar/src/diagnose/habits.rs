@@ -1,6 +1,7 @@
 //! Habits of other languages, and what is written here instead.
 
 use super::{Guess, Place};
+use crate::error::RANGE;
 use crate::recover::{is_first_of_line, is_in_column_0};
 use crate::scan::TokenKind;
 
@@ -25,6 +26,14 @@ impl Place<'_, '_> {
         Some(self.found(self.expected.to_vec(), Some(help)))
     }
 
+    /// `not a`, `not (a)`
+    pub(super) fn not_in_words(&self) -> Guess {
+        let place = Place::new(self.scan, self.tokens.clone(), self.index.checked_sub(1)?, self.expected);
+        let is_operand = self.is_name(0) || self.text == "(";
+        let is_not = place.text == "not" && is_operand && !is_first_of_line(self.scan, self.index);
+        is_not.then(|| place.found(vec!["an expression"], Some("not is written `!`")))
+    }
+
     /// `texture(image, uv)`
     pub(super) fn is_called_texture(&self) -> bool {
         self.text == "texture" && self.text_at(1) == "("
@@ -43,7 +52,17 @@ impl Place<'_, '_> {
             }
             "++" | "--" => "nothing is counted up: in a fold the next value is assigned, `n = n + 1`",
             "=" if self.expects("`,`") => "an argument is named with `:`: `f(octaves: 6)`",
-            "{" if self.expects("`->`") => "outputs stand behind `->`: `-> (value: float)`",
+            "{" | "=>" | ":" if self.expects("`->`") => "outputs stand behind `->`: `-> (value: float)`",
+            _ if self.expects("`..`") => RANGE,
+            _ if self.expects("a string") && previous == "use" => {
+                "a path stands between quotes: `use \"path.tex\"`"
+            }
+            _ if previous == "as" && self.token.kind == TokenKind::Text => {
+                "the name of an import stands without quotes: `use \"path.tex\" as name`"
+            }
+            _ if previous == ")" && TYPES.contains(&self.text_at(-2)) && self.text_at(-3) == "(" => {
+                "a value is converted by a call: `int(x)`"
+            }
             _ if previous == "->" && self.expects("`(`") => "outputs have names: `-> (value: float)`",
             "let" if previous == "{" => "an arm holds one expression: put the `let` before the `if`",
             "for" | "while" if self.expects("an assignment") => {
@@ -52,7 +71,6 @@ impl Place<'_, '_> {
             "if" if self.expects("an assignment") => "`if` chooses a value: `x = if c { a } else { b }`",
             "and" => "and is written `&&`",
             "or" => "or is written `||`",
-            _ if previous == "not" => "not is written `!`",
             "|" | "&" if self.expects("`,`") => "or is written `||`, and `&&`",
             _ if self.expects("`=`") && self.is_name(0) && TYPES.contains(&previous) => {
                 "a wire begins with `let`, and its type is inferred: `let x = …`"
@@ -75,6 +93,15 @@ impl Place<'_, '_> {
             "import" | "include" | "require" => "a file is imported with `use \"path.tex\"`",
             "const" | "var" => "a constant or a resource is declared with `let`",
             "uniform" => "what a host sets is a `param`",
+            "struct" | "enum" | "class" | "type" => {
+                "nobody declares types: a node with several outputs gives a record"
+            }
+            "with"
+                if self.token.kind == TokenKind::Word
+                    && self.at(-1).is_some_and(|t| t.kind == TokenKind::Text) =>
+            {
+                "an import is named with `as`: `use \"path.tex\" as name`"
+            }
             "material" | "shader" => "an entry point is a `texture`",
             text if TYPES.contains(&text) && self.text_at(2) == "(" => {
                 "a function is a `node`: `node f(x: float) -> (value: float) { value = x }`"

@@ -1,7 +1,7 @@
 //! Statements that are none, and expressions that stand where no operator joins them.
 
 use super::{Guess, Place};
-use crate::error::{SyntaxError, SyntaxErrorKind as Kind};
+use crate::error::{Statement, SyntaxError, SyntaxErrorKind as Kind};
 use crate::recover::{is_first_of_line, is_in_column_0};
 use crate::scan::TokenKind;
 use crate::syntax::Span;
@@ -71,13 +71,17 @@ impl Place<'_, '_> {
         let before = self.at(-1)?;
         let assigns = matches!(self.text, ":" | "::" | "=>" | "==" | "+=" | "-=" | "*=" | "/=" | "++" | "--");
         let begins = self.expects("`=`") && self.is_name(-1) && !assigns;
-        let is_return = self.text_at(-1) == "return";
+        let found = match (self.text_at(-1), self.text) {
+            ("return", _) => Statement::Return,
+            (_, ".") if self.text_at(2) == "=" => Statement::Component,
+            _ => Statement::Expression,
+        };
         // A name behind a name is a declaration in another language's order: `float x = 1`.
-        if !begins || !self.previous_begins_statement() || (self.is_name(0) && !is_return) {
+        if !begins || !self.previous_begins_statement() || (self.is_name(0) && found != Statement::Return) {
             return None;
         }
-        let error = SyntaxError::new(Kind::NotAnAssignment { is_return }, before.span);
-        Some(error.related((!is_return).then_some(self.token.span), "expected `=`"))
+        let error = SyntaxError::new(Kind::NotAnAssignment { found }, before.span);
+        Some(error.related((found != Statement::Return).then_some(self.token.span), "expected `=`"))
     }
 
     /// Whether the token before could be the first of a statement: not the name behind `let`, nor
