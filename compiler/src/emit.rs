@@ -4,6 +4,12 @@ use crate::lower::Lowered;
 use naga::back::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
+/// The greatest float as the writer prints it: rounded up, beyond what a float can be. naga reads
+/// it back; Tint refuses it.
+const GREATEST_SHORT: &str = "340282350000000000000000000000000000000f";
+/// The greatest float.
+const GREATEST: &str = "3.4028234663852886e38f";
+
 /// The module as WGSL.
 ///
 /// # Errors
@@ -15,6 +21,7 @@ pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
         wgsl::write_string(&lowered.module, &info, wgsl::WriterFlags::empty()).map_err(|e| describe(&e))?;
     // The writer breaks the line behind attributes.
     let text = text.replace(") \nvar", ") var").replace("@fragment \n", "@fragment\n");
+    let text = text.replace(GREATEST_SHORT, GREATEST);
     Ok(lowered.names.apply(&text, &lowered.results))
 }
 

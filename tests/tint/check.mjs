@@ -1,8 +1,10 @@
 // Compiles WGSL with Tint, Chromium's compiler, on a device without a GPU: what it refuses, Chrome refuses.
 //
 //   npm ci                           once, in this folder
-//   node check.mjs PATH…             files, and folders with all the *.wgsl below them
+//   node check.mjs PATH…             files, and folders with all the *.wgsl and *.shaders below them
 //   node check.mjs --self-test       shows that the judge itself works
+//
+// A file of shaders (*.shaders) holds many, each behind a line `//// NAME`.
 //
 // Exit status: 0 all accepted, 1 some refused or none found, 2 the check could not run.
 
@@ -18,7 +20,20 @@ function shadersBelow(path) {
     .flatMap((entry) => {
       const inner = join(path, entry.name);
       if (entry.isDirectory()) return shadersBelow(inner);
-      return entry.isFile() && entry.name.endsWith('.wgsl') ? [inner] : [];
+      return entry.isFile() && /\.(wgsl|shaders)$/.test(entry.name) ? [inner] : [];
+    });
+}
+
+/** The shaders of a file, as `[name, code]`. */
+function shadersOf(file) {
+  const text = readFileSync(file, 'utf8');
+  if (!file.endsWith('.shaders')) return [[file, text]];
+  return text
+    .split(/^\/\/\/\/ /m)
+    .slice(1)
+    .map((part) => {
+      const end = part.indexOf('\n');
+      return [`${file}, ${part.slice(0, end)}`, part.slice(end + 1)];
     });
 }
 
@@ -37,16 +52,17 @@ async function complaints(device, code) {
 }
 
 async function check(device, paths) {
-  const files = paths.flatMap(shadersBelow);
+  let accepted = 0;
   let refused = 0;
-  for (const file of files) {
-    const found = await complaints(device, readFileSync(file, 'utf8'));
+  for (const [name, code] of paths.flatMap(shadersBelow).flatMap(shadersOf)) {
+    const found = await complaints(device, code);
     if (found.length > 0) refused += 1;
-    for (const { line, column, message } of found) console.log(`${file}:${line}:${column}: ${message}`);
+    else accepted += 1;
+    for (const { line, column, message } of found) console.log(`${name}:${line}:${column}: ${message}`);
   }
-  console.log(`${files.length - refused} shaders accepted, ${refused} refused`);
-  if (files.length === 0) console.error(`no .wgsl below ${paths.join(', ')}`);
-  return files.length > 0 && refused === 0;
+  console.log(`${accepted} shaders accepted, ${refused} refused`);
+  if (accepted + refused === 0) console.error(`no shader below ${paths.join(', ')}`);
+  return accepted > 0 && refused === 0;
 }
 
 const SAMPLES = `

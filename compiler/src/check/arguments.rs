@@ -222,11 +222,14 @@ impl<'a> Checker<'a> {
         let scopes = std::mem::replace(&mut f.scopes, vec![scope]);
         let unknown = std::mem::take(&mut f.unknown);
         let base = std::mem::replace(&mut f.base, 0);
+        // A name that the caller binds is not the default's.
+        let outer = std::mem::take(&mut f.bound);
         f.foreign += 1;
         let wire = self.expr(f, default);
         let wire = self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
         f.foreign -= 1;
-        (f.module, f.dims, f.scopes, f.unknown, f.base) = (module, dims, scopes, unknown, base);
+        (f.module, f.dims, f.scopes) = (module, dims, scopes);
+        (f.unknown, f.base, f.bound) = (unknown, base, outer);
         wire
     }
 
