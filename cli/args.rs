@@ -18,8 +18,9 @@ Start here:
 Exit codes: 0 fine, 1 the input is wrong, 2 the command line is wrong, 3 the machine can't.";
 
 const CHECK: &str = "\
-Example:
+Examples:
   texgraph check tiling.tex marble.tex
+  texgraph check tiling.tex --profile bevy    may it be a material of Bevy?
 Nothing is printed for a file without errors. Pictures are not opened: `render` and `build` do that.";
 
 const BUILD: &str = "\
@@ -29,7 +30,9 @@ writes, for the file's one texture `tiling`:
   shaders/tiling.wgsl              the shader
   shaders/tiling.ron               what a host must bind and may set
   shaders/tiling.grass.layers.bin  the texels of `grass`, all levels
-All files are made before the first is written; after an error the old ones are as they were.";
+All files are made before the first is written; after an error the old ones are as they were.
+  texgraph build tiling.tex -o shaders --form library --profile bevy
+writes a function to import into a material of Bevy, its bindings in group 3 from 100 on.";
 
 const RENDER: &str = "\
 Examples:
@@ -123,6 +126,35 @@ pub struct Common {
     pub allow_outside: bool,
 }
 
+/// The host that a program is for.
+#[derive(clap::Args)]
+pub struct Host {
+    /// The host whose limits are kept
+    #[arg(long, value_enum, default_value_t, value_name = "HOST")]
+    pub profile: Profile,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Profile {
+    /// Every WebGPU device: 16 textures, 64 KiB of params, 8 outputs, textures of 8192 a side
+    #[default]
+    Webgpu,
+    /// WebGPU's compatibility mode: 16 textures, 16 KiB, 4 outputs, textures of 4096 a side
+    Compat,
+    /// A material of Bevy: 6 textures; `build` puts bindings into group 3 from 100 on
+    Bevy,
+}
+
+impl From<Profile> for texgraph_compiler::Profile {
+    fn from(profile: Profile) -> texgraph_compiler::Profile {
+        match profile {
+            Profile::Webgpu => texgraph_compiler::Profile::Webgpu,
+            Profile::Compat => texgraph_compiler::Profile::Compat,
+            Profile::Bevy => texgraph_compiler::Profile::Bevy,
+        }
+    }
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum MessageFormat {
     /// Pages with source lines and underlines
@@ -140,6 +172,8 @@ pub struct Check {
     /// The .tex files
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub host: Host,
     #[command(flatten)]
     pub common: Common,
 }
@@ -161,12 +195,14 @@ pub struct Build {
     /// The format of the manifest
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub manifest: ManifestFormat,
-    /// The @group of all bindings, 0 to 7
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=7))]
-    pub group: u32,
-    /// The first @binding, 0 to 999; the others follow
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=999))]
-    pub first_binding: u32,
+    /// The @group of all bindings, 0 to 7; 0, or what the profile says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=7))]
+    pub group: Option<u32>,
+    /// The first @binding, 0 to 999, the others follow; 0, or what the profile says
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=999))]
+    pub first_binding: Option<u32>,
+    #[command(flatten)]
+    pub host: Host,
     #[command(flatten)]
     pub common: Common,
 }
@@ -251,6 +287,8 @@ pub struct Cost {
     /// How the figures are printed
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub format: CostFormat,
+    #[command(flatten)]
+    pub host: Host,
     #[command(flatten)]
     pub common: Common,
 }

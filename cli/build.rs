@@ -51,6 +51,8 @@ fn show(report: &mut Report, shown: &mut Vec<Diagnostic>, mut problem: Problem) 
 
 /// All files of one texture. A bake that a param changes has no file: its host draws it.
 fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<Vec<Made>, Problem> {
+    let profile = texgraph_compiler::Profile::from(args.host.profile);
+    let (group, first_binding) = profile.bindings();
     let options = Options {
         texture,
         outputs: None,
@@ -59,11 +61,13 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
             Form::Library => manifest::Form::Library,
             Form::Functions => manifest::Form::Functions,
         },
-        group: args.group,
-        first_binding: args.first_binding,
+        group: args.group.unwrap_or(group),
+        first_binding: args.first_binding.unwrap_or(first_binding),
+        profile,
     };
     let mut compiled = program.compile(&options)?;
     let mut tables = program.load(&mut compiled)?;
+    program::fit(&compiled, profile)?;
     bake::render_fixed(&compiled.program, &mut tables)?;
     let mut manifest = compiled.program.manifest;
     let mut files = name_tables(&mut manifest, &tables);

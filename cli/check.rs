@@ -11,8 +11,10 @@ use crate::program::{self, Program};
 pub fn run(args: &Check, report: &mut Report) -> Result<(), Problem> {
     let library = program::library()?;
     for file in &args.files {
-        let checked =
-            Program::open(&library, file, args.common.allow_outside).and_then(|program| program.check());
+        let checked = Program::open(&library, file, args.common.allow_outside).and_then(|program| {
+            program.check()?;
+            program.check_profile(args.host.profile.into())
+        });
         if let Err(problem) = checked {
             report.show(&problem);
         }

@@ -5,8 +5,8 @@ use crate::output;
 use crate::problem::{Problem, Report};
 use crate::program::{self, Program};
 use std::fmt::Write;
-use texgraph_compiler::Options;
 use texgraph_compiler::cost::{self, Cost, Counts, PassCost};
+use texgraph_compiler::{Options, Profile};
 
 /// Counts the named texture, or all of a file.
 ///
@@ -18,10 +18,12 @@ pub fn run(args: &Args, report: &mut Report) -> Result<(), Problem> {
     let library = program::library()?;
     let program = Program::open(&library, &file, args.common.allow_outside)?;
     let mut costs = Vec::new();
+    let profile = Profile::from(args.host.profile);
     for texture in program.wanted(texture)? {
-        let mut compiled = program.compile(&Options { texture, ..Options::default() })?;
+        let mut compiled = program.compile(&Options { texture, profile, ..Options::default() })?;
         // What can't be loaded has an unknown size; `render` and `build` say why.
         let _ = program.load(&mut compiled);
+        program::fit(&compiled, profile)?;
         costs.push(cost::cost(&compiled));
     }
     output::print(&match args.format {

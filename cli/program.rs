@@ -7,7 +7,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use texgraph_compiler::diagram::Diagram;
 use texgraph_compiler::module::{Loader, Source, Sources};
-use texgraph_compiler::{Compiled, Failure, Library, Options};
+use texgraph_compiler::{Compiled, Failure, Library, Options, Profile, profile};
 use texgraph_runtime::project::Project;
 use texgraph_runtime::resource::{self, Tables};
 
@@ -45,6 +45,14 @@ impl<'a> Program<'a> {
     pub fn check(&self) -> Result<(), Problem> {
         texgraph_compiler::check(self.library, &self.path, &self.project)?;
         Ok(())
+    }
+
+    /// Holds the file's textures against the limits of a host.
+    ///
+    /// # Errors
+    /// All that they pass.
+    pub fn check_profile(&self, profile: Profile) -> Result<(), Problem> {
+        Ok(texgraph_compiler::check_profile(self.library, &self.path, &self.project, profile)?)
     }
 
     /// The names of the file's textures.
@@ -92,6 +100,20 @@ impl<'a> Program<'a> {
     pub fn load(&self, compiled: &mut Compiled) -> Result<Tables, Failure> {
         resource::load(&mut compiled.program, &self.project)
             .map_err(|diagnostics| Failure { sources: compiled.sources.clone(), diagnostics })
+    }
+}
+
+/// Whether the host has room for the textures of a program, as far as they are loaded.
+///
+/// # Errors
+/// All that are too large.
+pub fn fit(compiled: &Compiled, profile: Profile) -> Result<(), Failure> {
+    let texgraph_compiler::Program { passes, manifest } = &compiled.program;
+    let graph = passes.last().map(|pass| &pass.graph);
+    let diagnostics = graph.map_or(Vec::new(), |graph| profile::sides(profile, manifest, graph));
+    match diagnostics.is_empty() {
+        true => Ok(()),
+        false => Err(Failure { sources: compiled.sources.clone(), diagnostics }),
     }
 }
 

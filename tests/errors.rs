@@ -2,8 +2,9 @@
 //!
 //! A file makes one error, or as many as its first line says: `// expect: E0101, E0216`. What needs
 //! more than the text is asked for there too: `// ask: texture meadow`, `// ask: output height`,
-//! `// ask: load` (the resources), `// ask: large file a.png` (the same beside such a file). A limit
-//! is passed by `// repeat: 4097` and a line that ends in `// repeated`.
+//! `// ask: load` (the resources), `// ask: large file a.png` (the same beside such a file),
+//! `// ask: profile bevy`. A limit is passed by `// repeat: 4097` and a line that ends in
+//! `// repeated`; what is asked for then stands in the second line.
 //! `INSTA_UPDATE=always` writes the pages anew.
 
 #[path = "errors/support.rs"]
@@ -12,7 +13,8 @@ mod support;
 
 use std::collections::BTreeSet;
 use std::fs;
-use support::{Case, codes_in_use, errors_of, fenced, root};
+use support::{Case, codes_in_use, errors_for, errors_of, fenced, root};
+use texgraph_compiler::Profile;
 use texgraph_compiler::diagnostic::{codes, render};
 
 /// Codes that no file can show: bugs of texgraph.
@@ -86,6 +88,28 @@ fn every_code_has_a_file() {
     assert!(codes.len() >= 70, "{} codes", codes.len());
     let stages: BTreeSet<&str> = cases.iter().map(Case::stage).collect();
     assert!(STAGES.iter().all(|stage| stages.contains(stage)), "{stages:?}");
+}
+
+#[test]
+fn params_fill_the_uniform_block_of_each_host() {
+    for (profile, bytes) in [(Profile::Compat, 16_384), (Profile::Webgpu, 65_536), (Profile::Bevy, 65_536)] {
+        let text = |count: usize| {
+            let params: String = (0..count).map(|i| format!("param p{i}: vec4 = vec4(0.0)\n")).collect();
+            let sum: Vec<String> = (0..count).map(|i| format!("p{i}")).collect();
+            format!("{params}texture t(uv: vec2) -> (color: color) {{ color = {} }}\n", sum.join(" + "))
+        };
+        if let Some(failure) = errors_for(&text(bytes / 16), profile) {
+            panic!("{profile:?}: {:?}", failure.diagnostics);
+        }
+        let failure = errors_for(&text(bytes / 16 + 1), profile).expect("one too many");
+        let [error] = failure.diagnostics.as_slice() else { panic!("{:?}", failure.diagnostics) };
+        assert_eq!(error.code, "E0702");
+        let figures = format!("take {} bytes, and ", bytes + 16);
+        assert!(
+            error.message.contains(&figures) && error.message.ends_with(&format!("room for {bytes}")),
+            "{error:?}"
+        );
+    }
 }
 
 #[test]

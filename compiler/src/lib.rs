@@ -25,11 +25,13 @@ pub mod manifest;
 pub mod module;
 mod naming;
 pub mod pass;
+pub mod profile;
 pub mod resource;
 
 pub use diagnostic::Diagnostic;
 pub use library::Library;
 pub use manifest::{Form, Manifest};
+pub use profile::Profile;
 
 use crate::check::Checker;
 use crate::diagnostic::{Place, limits};
@@ -50,11 +52,20 @@ pub struct Options {
     pub group: u32,
     /// The first `@binding`; the others follow.
     pub first_binding: u32,
+    /// The host whose limits are kept; its bindings are not taken over.
+    pub profile: Profile,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { texture: None, outputs: None, form: Form::Complete, group: 0, first_binding: 0 }
+        Options {
+            texture: None,
+            outputs: None,
+            form: Form::Complete,
+            group: 0,
+            first_binding: 0,
+            profile: Profile::Webgpu,
+        }
     }
 }
 
@@ -117,12 +128,7 @@ pub fn compile(
 ) -> Result<Compiled, Failure> {
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
-    let checked = checked(library, &modules, options);
-    let (graphs, label) = checked.map_err(|diagnostics| fail(advice::advise(&modules, diagnostics)))?;
-    let optimised =
-        graphs.into_iter().map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph), bake });
-    let graphs: Vec<PassGraph> = optimised.collect();
-    let manifest = contract::manifest(&graphs, &label, options);
+    let Planned { graphs, manifest } = planned(library, &modules, options).map_err(fail)?;
     let mut passes = Vec::new();
     for (i, PassGraph { graph, .. }) in graphs.into_iter().enumerate() {
         let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i));
@@ -168,12 +174,66 @@ fn main_place(modules: &Modules) -> Place {
     Place { file: modules.modules.last().map_or(0, |module| module.file), ..Place::default() }
 }
 
-/// The graphs of the chosen texture and the bakes before it, with its documentation.
-fn checked(
+/// Holds every texture of a file against the limits of a host, in the library form. What else is
+/// wrong with them is not looked for: see [`check`].
+///
+/// # Errors
+/// Every limit that is passed, in source order.
+pub fn check_profile(
     library: &Library,
-    modules: &Modules,
-    options: &Options,
-) -> Result<(Vec<PassGraph>, String), Vec<Diagnostic>> {
+    main: &str,
+    loader: &dyn Loader,
+    profile: Profile,
+) -> Result<(), Failure> {
+    let modules = load(library, main, loader)?;
+    let tree = modules.modules.last().map(|module| &module.tree);
+    let mut diagnostics = Vec::new();
+    for texture in tree.map(|tree| check::textures(tree)).unwrap_or_default() {
+        let texture = Some(texture.to_owned());
+        let options = Options { texture, form: Form::Library, profile, ..Options::default() };
+        diagnostics.extend(planned(library, &modules, &options).err().unwrap_or_default());
+    }
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.place, diagnostic.code));
+    // Textures share bakes, and with them their errors.
+    diagnostics.dedup();
+    if diagnostics.is_empty() { Ok(()) } else { Err(Failure { sources: modules.sources, diagnostics }) }
+}
+
+/// A texture on its way to shaders.
+struct Planned {
+    /// After all passes: bakes, then the texture.
+    graphs: Vec<PassGraph>,
+    /// What a host must allocate, within its limits.
+    manifest: Manifest,
+}
+
+/// All of compiling but the shaders.
+fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Planned, Vec<Diagnostic>> {
+    let checked = checked(library, modules, options);
+    let Checked { graphs, label, head } = checked.map_err(|found| advice::advise(modules, found))?;
+    let optimised =
+        graphs.into_iter().map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph), bake });
+    let graphs: Vec<PassGraph> = optimised.collect();
+    let manifest = contract::manifest(&graphs, &label, options);
+    let passed = graphs.last().map(|last| profile::check(options.profile, &manifest, &last.graph, head));
+    match passed.unwrap_or_default() {
+        passed if passed.is_empty() => Ok(Planned { graphs, manifest }),
+        passed => Err(passed),
+    }
+}
+
+/// A texture that is right.
+struct Checked {
+    /// Bakes, then the texture.
+    graphs: Vec<PassGraph>,
+    /// Its documentation.
+    label: String,
+    /// Its name in its file.
+    head: Place,
+}
+
+/// The graphs of the chosen texture and the bakes before it.
+fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     let key = checker.texture(options.texture.as_deref());
@@ -191,7 +251,7 @@ fn checked(
     if let Some(last) = graphs.last_mut() {
         choose_outputs(&mut last.graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
     }
-    Ok((graphs, label))
+    Ok(Checked { graphs, label, head })
 }
 
 /// Leaves only the outputs that are wanted.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use texgraph_compiler::Diagnostic;
 use texgraph_compiler::module::Loader;
-use texgraph_compiler::{Compiled, Failure, Library, Options, check, compile};
+use texgraph_compiler::{Compiled, Failure, Library, Options, Profile, check, compile};
 use texgraph_runtime::{project::Project, resource};
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| Library::standard().expect("the library is right"));
@@ -78,6 +78,7 @@ pub struct Case {
     stage: String,
     name: String,
     head: String,
+    ask: Option<String>,
 }
 
 impl Case {
@@ -93,7 +94,8 @@ impl Case {
         let text =
             fs::read_to_string(root().join(stage).join(format!("{name}.tex"))).expect("it can be read");
         let head = text.lines().next().unwrap_or_default().to_owned();
-        Case { stage: stage.to_owned(), name, head }
+        let ask = text.lines().take(2).find_map(|line| line.strip_prefix("// ask: ")).map(str::to_owned);
+        Case { stage: stage.to_owned(), name, head, ask }
     }
 
     pub fn stage(&self) -> &str {
@@ -130,7 +132,7 @@ impl Case {
     pub fn errors(&self) -> Failure {
         let loader = Folder { path: self.folder(), main: None };
         let main = format!("{}.tex", self.path());
-        let failure = match self.head.strip_prefix("// ask: ") {
+        let failure = match self.ask.as_deref() {
             Some("load") => load(&main, &loader, &root().join(&main)),
             Some(wish) if wish.starts_with("large file ") => load_large(&main, &loader, &wish[11..]),
             Some(wish) => compile(&LIBRARY, &main, &loader, &asked(wish)).err(),
@@ -165,7 +167,16 @@ fn asked(wish: &str) -> Options {
     match wish.split_once(' ') {
         Some(("texture", name)) => Options { texture: Some(name.to_owned()), ..Options::default() },
         Some(("output", name)) => Options { outputs: Some(vec![name.to_owned()]), ..Options::default() },
+        Some(("profile", name)) => Options { profile: profile(name), ..Options::default() },
         _ => Options::default(),
+    }
+}
+
+fn profile(name: &str) -> Profile {
+    match name {
+        "compat" => Profile::Compat,
+        "bevy" => Profile::Bevy,
+        _ => Profile::Webgpu,
     }
 }
 
@@ -174,6 +185,12 @@ pub fn errors_of(text: &str) -> Result<(), Failure> {
     let loader =
         Folder { path: root().join("imports"), main: Some(("main.tex".to_owned(), text.to_owned())) };
     check(&LIBRARY, "main.tex", &loader).map(drop)
+}
+
+/// Compiles a text for a host.
+pub fn errors_for(text: &str, profile: Profile) -> Option<Failure> {
+    let loader = Folder { path: root(), main: Some(("main.tex".to_owned(), text.to_owned())) };
+    compile(&LIBRARY, "main.tex", &loader, &Options { profile, ..Options::default() }).err()
 }
 
 /// A main file that nobody has.

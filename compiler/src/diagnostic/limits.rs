@@ -46,6 +46,58 @@ pub fn too_much_evaluation(place: Place, name: &str) -> Diagnostic {
     .help("make it shorter, or let it depend on a param: then the shader computes it")
 }
 
+/// More textures than a host holds for one shader.
+pub fn too_many_textures(
+    place: Place,
+    name: &str,
+    count: usize,
+    host: &str,
+    most: usize,
+    mend: &str,
+) -> Diagnostic {
+    Diagnostic::new(
+        "E0701",
+        place,
+        format!("`{name}` reads {count} textures, and {host} has room for {most}"),
+        format!("{} too many", count - most),
+    )
+    .help(mend)
+}
+
+/// More bytes of params than a host holds.
+pub fn too_many_uniform_bytes(place: Place, name: &str, bytes: u32, host: &str, most: u32) -> Diagnostic {
+    Diagnostic::new(
+        "E0702",
+        place,
+        format!("the params of `{name}` take {bytes} bytes, and {host} has room for {most}"),
+        "its uniform block is too large",
+    )
+    .help("make params that never change constants (`let`), and many numbers of one kind an `indices` or an `image`")
+}
+
+/// More outputs than a host draws to at once.
+pub fn too_many_outputs(place: Place, name: &str, count: usize, host: &str, most: usize) -> Diagnostic {
+    Diagnostic::new(
+        "E0703",
+        place,
+        format!("`{name}` has {count} outputs, and {host} draws to {most} at once"),
+        "an output is a colour attachment",
+    )
+    .help("put several numbers into one output (roughness, metallic and height into a `vec3`), or build it with `--form library`")
+}
+
+/// A texture that is larger than a host's may be.
+pub fn texture_over_profile(place: Place, name: &str, size: [u32; 2], host: &str, most: u32) -> Diagnostic {
+    let [width, height] = size;
+    Diagnostic::new(
+        "E0704",
+        place,
+        format!("`{name}` has {width}×{height} texels, and {host} has textures of {most} a side at most"),
+        "too large for the profile",
+    )
+    .help("make the picture smaller, or cut it into `patterns`")
+}
+
 /// No texture to compile.
 pub fn no_texture(place: Place) -> Diagnostic {
     Diagnostic::new("E0801", place, "the file declares no texture", "nothing to compile")
