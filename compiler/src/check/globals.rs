@@ -8,6 +8,7 @@ use crate::graph::{Builder, Constant, Param, ParamId, Scalar, Type};
 use crate::library::Callable;
 use crate::module::Module;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::VecDeque;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Item, ItemKind, Name, Node, Range, Span};
 
@@ -66,19 +67,28 @@ pub fn name_of(item: &Item) -> Option<&Name> {
     }
 }
 
-/// The prefix of each module's params (`stone.`), by the first chain of aliases in source order
-/// that leads to it from the main file, which is the last.
+/// The name of the value that an item declares.
+fn value_of(item: &Item) -> Option<&Name> {
+    match &item.kind {
+        ItemKind::Let { name, .. } | ItemKind::Param { name, .. } => Some(name),
+        _ => None,
+    }
+}
+
+/// The prefix of each module's params (`stone.`), by the chain of imports that leads to it from the
+/// main file, which is the last: the shortest, and the first in source order of those. So what the
+/// main file imports goes by the name that the main file gives it.
 pub fn aliases(modules: &[Module], library: usize) -> Vec<String> {
     let mut prefixes: Vec<Option<String>> = vec![None; modules.len()];
-    let mut stack =
-        if modules.len() > library { vec![(modules.len() - 1, String::new())] } else { Vec::new() };
-    while let Some((module, prefix)) = stack.pop() {
+    let main = modules.len().checked_sub(1).filter(|main| *main >= library);
+    let mut queue: VecDeque<(usize, String)> = main.map(|main| (main, String::new())).into_iter().collect();
+    while let Some((module, prefix)) = queue.pop_front() {
         if prefixes[module].is_some() {
             continue;
         }
-        for import in modules[module].imports.iter().rev() {
+        for import in &modules[module].imports {
             let alias = import.alias.as_ref().map_or(String::new(), |alias| format!("{}.", alias.text));
-            stack.push((import.module, format!("{prefix}{alias}")));
+            queue.push_back((import.module, format!("{prefix}{alias}")));
         }
         prefixes[module] = Some(prefix);
     }
@@ -128,10 +138,20 @@ impl<'a> Checker<'a> {
                 repeated.insert(name.span.start);
             }
         }
-        let mut aliases: FxHashMap<&str, ()> = FxHashMap::default();
+        let mut aliases: FxHashMap<&str, Span> = FxHashMap::default();
         for alias in m.imports.iter().filter_map(|import| import.alias.as_ref()) {
-            if aliases.insert(&alias.text, ()).is_some() {
-                self.diagnostics.push(imports::alias_twice(place(alias.span), &alias.text));
+            if let Some(first) = aliases.get(alias.text.as_str()) {
+                let error = imports::alias_twice(place(alias.span), &alias.text, place(*first));
+                self.diagnostics.push(error);
+            }
+            aliases.entry(&alias.text).or_insert(alias.span);
+        }
+        // Before a dot a name is the file or the value, so it can't be both.
+        for name in m.tree.items.iter().filter_map(value_of) {
+            if let Some(alias) = aliases.get(name.text.as_str()) {
+                let error = names::bound_twice(place(name.span), &name.text, place(*alias));
+                self.diagnostics.push(error);
+                repeated.insert(name.span.start);
             }
         }
         self.check_joined(module);
@@ -313,12 +333,19 @@ impl<'a> Checker<'a> {
             return None;
         }
         Some(Param {
-            name: format!("{}{}", self.aliases[f.module], name.text),
+            name: self.fresh_param(&format!("{}{}", self.aliases[f.module], name.text)),
             label: item.doc.clone(),
             ty: Type::Vector(scalar, width),
             default: value,
             range,
         })
+    }
+
+    /// The name of a param, made unique: a joined file's aliases may be the main file's too.
+    fn fresh_param(&mut self, wish: &str) -> String {
+        let others = (2..).map(|n| format!("{wish}_{n}"));
+        let mut names = std::iter::once(wish.to_owned()).chain(others);
+        names.find(|name| self.param_names.insert(name.clone())).unwrap_or_default()
     }
 
     fn range(

@@ -70,6 +70,7 @@ pub struct Checker<'a> {
     /// For each function the most steps that its folds take inside each other.
     function_steps: Vec<u64>,
     params: Vec<Param>,
+    param_names: FxHashSet<String>,
     resources: Vec<Resource>,
     resource_wires: Vec<ResourceFields>,
     views: Vec<ResourceView>,
@@ -110,6 +111,7 @@ impl<'a> Checker<'a> {
             functions: Vec::new(),
             function_steps: Vec::new(),
             params: Vec::new(),
+            param_names: FxHashSet::default(),
             resources: Vec::new(),
             resource_wires: Vec::new(),
             views: Vec::new(),

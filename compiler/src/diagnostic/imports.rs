@@ -35,8 +35,9 @@ pub fn clash(place: Place, name: &str, first: Place) -> Diagnostic {
 }
 
 /// An alias that is taken.
-pub fn alias_twice(place: Place, name: &str) -> Diagnostic {
+pub fn alias_twice(place: Place, name: &str, first: Place) -> Diagnostic {
     Diagnostic::new("E0604", place, format!("two files are imported as `{name}`"), "the second")
+        .related(first, "the first")
         .help("give each its own name")
 }
 
