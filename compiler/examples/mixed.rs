@@ -9,6 +9,8 @@
 //! nodes. `compile` compiles one so often and says how long the quickest took and how much memory the
 //! process has used at most.
 
+#![allow(clippy::disallowed_methods, reason = "a program of its own, which writes files")]
+
 #[path = "../benches/mixed/mod.rs"]
 mod mixed;
 

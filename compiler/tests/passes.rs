@@ -102,11 +102,14 @@ fn at(u: f32, v: f32) -> Vec<(&'static str, Constant)> {
 }
 
 fn folds(function: &Function) -> Vec<&Fold> {
-    let fold = |operation| match operation {
-        &Operation::Fold(ref fold) => Some(&**fold),
-        _ => None,
-    };
-    function.values.iter().filter_map(fold).collect()
+    function
+        .values
+        .iter()
+        .filter_map(|operation| match operation {
+            Operation::Fold(fold) => Some(&**fold),
+            _ => None,
+        })
+        .collect()
 }
 
 fn named<'g>(graph: &'g Graph, name: &str) -> &'g Function {

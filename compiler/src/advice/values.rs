@@ -111,7 +111,7 @@ impl Look<'_, '_> {
             let is_named = binding.kind == Kind::Output && binding.name.text == name.text;
             is_named && contains(binding.scope, self.span())
         };
-        let output = self.names.bindings.iter().filter(declares).next_back()?;
+        let output = self.names.bindings.iter().rfind(declares)?;
         Some((output.span, format!("`{}` is declared here", name.text)))
     }
 

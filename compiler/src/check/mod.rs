@@ -42,7 +42,7 @@ use crate::module::Module;
 use crate::resource::{KINDS, Resource};
 use frame::{Frame, Step, Target};
 use globals::Global;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span};
 use types::Declared;

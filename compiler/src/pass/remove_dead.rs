@@ -33,12 +33,12 @@ pub fn run(graph: Graph) -> Graph {
 /// Where each output comes to stand when the dead ones are gone.
 fn places(live: &[bool]) -> Vec<u32> {
     let mut next = 0;
-    let mut place = |live: &bool| {
+    let place = |live: &bool| {
         let place = next;
         next += u32::from(*live);
         place
     };
-    live.iter().map(|live| place(live)).collect()
+    live.iter().map(place).collect()
 }
 
 /// Makes functions without what is dead.

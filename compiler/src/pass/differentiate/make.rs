@@ -74,7 +74,7 @@ impl<'a> Making<'a> {
             if let Some(name) = self.function.names.get(&old) {
                 self.builder.name(value, name);
                 for (tangent, (_, axis)) in tangents.into_iter().flatten().zip(AXES) {
-                    self.builder.name(tangent, &format!("{name}_{axis}"));
+                    self.builder.name(tangent, format!("{name}_{axis}"));
                 }
             }
         }
