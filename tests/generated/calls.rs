@@ -33,7 +33,7 @@ impl Generator<'_, '_> {
             // The widths of a node that came as an input are ours.
             (false, _) => N,
             (true, N) => ty.width,
-            (true, _) => self.some_width(s),
+            (true, _) => self.some_width(s).min(callable.widest),
         };
         let call = self.call_of(s, callable, n, depth)?;
         Some(match callable.outputs.as_slice() {
@@ -53,7 +53,7 @@ impl Generator<'_, '_> {
             return None;
         }
         let callable = self.choices.pick(&several).clone();
-        let n = if callable.generic { self.some_width(s) } else { N };
+        let n = if callable.generic { self.some_width(s).min(callable.widest) } else { N };
         let call = self.call_of(s, &callable, n, depth)?;
         let outputs = callable.outputs.into_iter().map(|(name, ty)| (name, ty.bound(n)));
         Some((call, outputs.collect()))
@@ -69,7 +69,10 @@ impl Generator<'_, '_> {
         for callable in self.all_callables(s).filter(|callable| self.may_call(s, callable)) {
             for (output, (_, given)) in callable.outputs.iter().enumerate() {
                 // A callee's own variable stands for any width.
-                let generic = callable.generic && given.width == N && given.scalar == ty.scalar;
+                let generic = callable.generic
+                    && given.width == N
+                    && given.scalar == ty.scalar
+                    && ty.width <= callable.widest;
                 if generic || *given == ty {
                     candidates.push(((callable.clone(), output), callable.library));
                 }
@@ -83,7 +86,8 @@ impl Generator<'_, '_> {
         let takes = |input: &Input| {
             input.optional
                 || match &input.takes {
-                    Takes::Value(_) | Takes::Matrix(_) => true,
+                    Takes::Value(_) => true,
+                    Takes::Matrix(_) => self.features.matrices,
                     Takes::Resource(kind) => s.resources.iter().any(|(_, found)| found == kind),
                     Takes::Node(..) => s.most == Rate::Pixel,
                 }
@@ -110,6 +114,9 @@ impl Generator<'_, '_> {
             }
         }
         self.touch(callable.rate);
+        if callable.generic && n == N {
+            self.widest = self.widest.min(callable.widest);
+        }
         let arguments = self.arguments(s, callable, n, binder.as_deref(), depth)?;
         let dim = match n {
             _ if !explicit => String::new(),
@@ -142,7 +149,13 @@ impl Generator<'_, '_> {
             }
             // The type of the first argument chooses between overloads.
             named |= i > 0 && self.choices.chance(10);
-            let argument = self.argument(s, callable, input, (i == 0, binds), n, depth)?;
+            let argument = match input.takes {
+                // Some of these bound a fold of the library.
+                Takes::Value(Ty::INT) if input.optional && callable.library => {
+                    Expr::primary((1 + self.choices.below(6)).to_string())
+                }
+                _ => self.argument(s, callable, input, (i == 0, binds), n, depth)?,
+            };
             arguments.push((named.then(|| input.name.clone()), argument));
         }
         Some(arguments)
@@ -246,23 +259,24 @@ fn intrinsic_call(library: &Library, intrinsic: Intrinsic) -> Option<Callable> {
     let name = intrinsic.row().name;
     name.starts_with(|c: char| c.is_ascii_lowercase()).then_some(())?;
     let output = vec![(String::new(), value(&signature.output)?)];
-    head(name, &signature.dims, &signature.inputs, output, Rate::Load)
+    let made = head(name, &signature.dims, &signature.inputs, output)?;
+    Some(Callable { rate: Rate::Load, steps: 1, widest: 4, ..made })
 }
 
 fn node_call(library: &Library, module: usize, item: usize) -> Option<Callable> {
     let module = library.modules().get(module)?;
     let ItemKind::Node(node) = &module.tree.items.get(item)?.kind else { return None };
     let outputs = node.outputs.iter().map(|field| Some((field.name.text.clone(), value(&field.ty)?)));
-    // What a library node reads besides its arguments is not looked up: any may be derivatives.
-    head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?, Rate::Pixel)
+    head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?)
 }
 
+/// What a library node reads besides its arguments, and how long its folds are, is not looked up:
+/// any may read derivatives, and loop over octaves and corners.
 fn head(
     name: &str,
     dims: &[syntax::Name],
     inputs: &[syntax::Input],
     outputs: Vec<(String, Ty)>,
-    rate: Rate,
 ) -> Option<Callable> {
     let inputs = inputs.iter().map(|input| {
         let takes = takes(&input.ty)?;
@@ -273,18 +287,22 @@ fn head(
         inputs: inputs.collect::<Option<_>>()?,
         outputs,
         generic: !dims.is_empty(),
-        rate,
+        rate: Rate::Pixel,
         overloaded: false,
         method: true,
         explicit: true,
-        steps: if rate == Rate::Load { 1 } else { 64 },
+        steps: 128,
         library: true,
+        widest: 3,
     })
 }
 
-/// A type that we know to give: values and resources.
+/// A type that we know to give.
 fn takes(ty: &syntax::Type) -> Option<Takes> {
     let TypeKind::Named { name, .. } = &ty.kind else { return None };
+    if let Some(size) = name.text.strip_prefix("mat") {
+        return size.parse().ok().map(Takes::Matrix);
+    }
     let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name.text);
     kind.map(Takes::Resource).or_else(|| value(ty).map(Takes::Value))
 }

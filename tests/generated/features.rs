@@ -24,11 +24,11 @@ impl Features {
     pub const NOW: Features = Features {
         pictures: true,
         literal_folds: true,
-        folds: false,
-        lambdas: false,
-        matrices: false,
-        tables: false,
-        bakes: false,
+        folds: true,
+        lambdas: true,
+        matrices: true,
+        tables: true,
+        bakes: true,
     };
 
     /// The whole language, as the grammar reads it.

@@ -1,7 +1,7 @@
 //! The items of a file: imports, constants, params, resources, nodes and textures.
 
 use super::expression::Expr;
-use super::program::{Exports, Generator};
+use super::program::{Exports, Generator, Noted};
 use super::types::{Callable, Input, Kind, N, Rate, Scalar, Scope, Takes, Ty, record};
 
 /// What a texture may take, with its type.
@@ -235,7 +235,7 @@ impl Generator<'_, '_> {
         if generic {
             s.declare("n", Ty::INT, Rate::Pixel, Rate::Load);
         }
-        let ((head, inputs, outputs, body), rate, steps) = self.noting(|me| {
+        let ((head, inputs, outputs, body), Noted { rate, steps, widest }) = self.noting(|me| {
             let (head, inputs) = me.inputs(&mut s);
             let outputs: Vec<(String, Ty)> = (0..*me.choices.pick(&[1, 1, 2, 3]))
                 .map(|_| {
@@ -260,6 +260,7 @@ impl Generator<'_, '_> {
             explicit: true,
             steps,
             library: false,
+            widest,
         };
         (text, callable)
     }
@@ -359,7 +360,7 @@ impl Generator<'_, '_> {
                 outputs.push((name.to_owned(), ty));
             }
         }
-        let (body, rate, steps) = self.noting(|me| me.body(&mut s, &outputs));
+        let (body, Noted { rate, steps, widest }) = self.noting(|me| me.body(&mut s, &outputs));
         let name = self.fresh();
         let head: Vec<String> = known.iter().map(|(name, ty)| format!("{name}: {}", ty.name())).collect();
         let text = format!("texture {name}({}) -> {} {body}", head.join(", "), record(&outputs));
@@ -379,6 +380,7 @@ impl Generator<'_, '_> {
             explicit: false,
             steps,
             library: false,
+            widest,
         };
         (text, callable)
     }
@@ -402,5 +404,6 @@ fn function(name: &str, inputs: &[Ty], outputs: &[(String, Ty)]) -> Callable {
         explicit: false,
         steps: 1,
         library: false,
+        widest: 4,
     }
 }

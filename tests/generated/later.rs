@@ -28,19 +28,18 @@ impl Generator<'_, '_> {
         let mut inner = s.clone();
         inner.steps = s.steps.saturating_mul(steps.max(1));
         self.steps = self.steps.max(inner.steps);
-        // Literal folds run when compiling: their accumulators are as constant as what they read.
         for (name, ty) in accumulators {
-            inner.declare(name.clone(), *ty, Rate::Pixel.min(s.most), Rate::Load);
+            inner.declare_in_fold(name.clone(), *ty);
         }
         let condition = self.while_part(&inner, depth);
-        inner.declare(variable.clone(), over, Rate::Pixel.min(s.most), Rate::Load);
+        inner.declare_in_fold(variable.clone(), over);
         let mut lines = Vec::new();
         for _ in 0..self.choices.below(3) {
             let ty = self.some_number(&inner);
             let name = self.fresh();
             let value = self.exact(&inner, ty, depth.min(2)).text;
             lines.push(format!("let {name} = {value}"));
-            inner.declare(name, ty, Rate::Pixel.min(s.most), Rate::Load);
+            inner.declare_in_fold(name, ty);
         }
         for (name, ty) in accumulators {
             // One that is not assigned keeps its value.
@@ -85,12 +84,16 @@ impl Generator<'_, '_> {
         String::new()
     }
 
-    /// `m * v`
+    /// `m * v`, or a column `m[i]`.
     pub fn product(&mut self, s: &Scope, ty: Ty, depth: u32) -> Option<Expr> {
         if !self.features.matrices || ty.scalar != Scalar::Float || ![2, 3].contains(&ty.width) {
             return None;
         }
-        let matrix = self.matrix(s, ty.width, depth).base();
+        if self.choices.chance(30) {
+            let base = self.matrix(s, ty.width, depth).base();
+            return Some(Expr::primary(format!("{base}[{}]", self.exact(s, Ty::INT, depth.min(2)).text)));
+        }
+        let matrix = self.matrix(s, ty.width, depth).at_least(5);
         let vector = self.exact(s, ty, depth).at_least(6);
         Some(Expr::product(format!("{matrix} * {vector}")))
     }
@@ -102,9 +105,32 @@ impl Generator<'_, '_> {
         if !known.is_empty() && self.choices.chance(70) {
             return Expr::primary(self.choices.pick(&known).as_str());
         }
-        let columns: Vec<String> =
-            (0..size).map(|_| self.exact(s, Ty::float(size), depth.min(2)).text).collect();
-        Expr::primary(format!("mat{size}({})", columns.join(", ")))
+        match self.choices.below(8) {
+            0 if size == 2 => {
+                let angle = self.fitting(s, Ty::FLOAT, depth.min(2)).text;
+                Expr::primary(format!("rotation({angle})"))
+            }
+            1 | 2 if depth > 0 => {
+                let node = *self.choices.pick(&["transpose", "inverse"]);
+                Expr::primary(format!("{node}({})", self.matrix(s, size, depth - 1).text))
+            }
+            3 if depth > 0 => {
+                let factor = self.exact(s, Ty::FLOAT, depth.min(2)).at_least(6);
+                Expr::product(format!("{} * {factor}", self.matrix(s, size, depth - 1).at_least(5)))
+            }
+            4 if depth > 0 => {
+                let right = self.matrix(s, size, depth - 1).at_least(6);
+                Expr::product(format!("{} * {right}", self.matrix(s, size, depth - 1).at_least(5)))
+            }
+            5 => {
+                let entries = (0..size * size).map(|_| self.fitting(s, Ty::FLOAT, 1).text);
+                Expr::primary(format!("mat{size}({})", entries.collect::<Vec<_>>().join(", ")))
+            }
+            _ => {
+                let columns = (0..size).map(|_| self.exact(s, Ty::float(size), depth.min(2)).text);
+                Expr::primary(format!("mat{size}({})", columns.collect::<Vec<_>>().join(", ")))
+            }
+        }
     }
 
     /// `table[i]` of a constant table.

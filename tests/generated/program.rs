@@ -52,6 +52,7 @@ pub fn program(choices: &mut Choices, features: Features, known: &Known) -> Prog
         room: 0,
         touched: Rate::Load,
         steps: 1,
+        widest: 4,
     };
     generator.files()
 }
@@ -70,6 +71,18 @@ pub struct Generator<'c, 'b> {
     touched: Rate,
     /// The most steps of folds around anything in the node being made.
     pub steps: u32,
+    /// The widest that the `<n>` of the node being made may be.
+    pub widest: u8,
+}
+
+/// What is noted while a node is made.
+pub struct Noted {
+    /// The highest rate of what it reads besides its inputs.
+    pub rate: Rate,
+    /// See [`Callable::steps`].
+    pub steps: u32,
+    /// See [`Callable::widest`].
+    pub widest: u8,
 }
 
 /// What a file has for those that import it.
@@ -109,14 +122,14 @@ impl Generator<'_, '_> {
         self.touched = self.touched.max(rate);
     }
 
-    /// Does some work with nothing noted; what it noted, and the steps of its folds.
-    pub fn noting<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> (T, Rate, u32) {
-        let before = (self.touched, self.steps);
-        (self.touched, self.steps) = (Rate::Load, 1);
+    /// Does some work with nothing noted, and what it notes.
+    pub fn noting<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> (T, Noted) {
+        let before = (self.touched, self.steps, self.widest);
+        (self.touched, self.steps, self.widest) = (Rate::Load, 1, 4);
         let result = work(self);
-        let noted = (self.touched, self.steps);
-        (self.touched, self.steps) = before;
-        (result, noted.0, noted.1)
+        let noted = Noted { rate: self.touched, steps: self.steps, widest: self.widest };
+        (self.touched, self.steps, self.widest) = before;
+        (result, noted)
     }
 
     /// White space or a comment, most often none.

@@ -166,6 +166,8 @@ pub struct Callable {
     pub steps: u32,
     /// It is not the program's own.
     pub library: bool,
+    /// The widest that `<n>` may be: the library's noises know up to three dimensions.
+    pub widest: u8,
 }
 
 /// A name with a value.
@@ -177,6 +179,8 @@ pub struct Wire {
     pub rate: Rate,
     /// What reading it makes of a node: an input does not make the node read anything.
     pub touches: Rate,
+    /// It changes from step to step of a fold, so it is no constant even where all else is.
+    pub steps: bool,
 }
 
 /// What names mean at a place of a program.
@@ -220,12 +224,23 @@ impl Scope {
     pub fn declare(&mut self, text: impl Into<String>, ty: Ty, rate: Rate, touches: Rate) {
         let text = text.into();
         self.hide(&text);
-        self.wires.push(Wire { text, ty, rate, touches });
+        self.wires.push(Wire { text, ty, rate, touches, steps: false });
+    }
+
+    /// A name inside a fold.
+    pub fn declare_in_fold(&mut self, text: impl Into<String>, ty: Ty) {
+        let text = text.into();
+        self.hide(&text);
+        let rate = Rate::Pixel.min(self.most);
+        self.wires.push(Wire { text, ty, rate, touches: Rate::Load, steps: true });
     }
 
     /// The same place, but only what is known when compiling may be read.
     pub fn constants(&self) -> Scope {
-        Scope { most: Rate::Load, ..self.clone() }
+        let mut known = Scope { most: Rate::Load, ..self.clone() };
+        known.wires.retain(|wire| !wire.steps);
+        known.matrices.clear();
+        known
     }
 
     /// Forgets a name.
