@@ -244,9 +244,11 @@ impl<'a> Checker<'a> {
             candidates.iter().filter_map(|callable| self.head(*callable)).flat_map(|head| head.inputs);
         let chooses = |word: &str, input: &Input| matches!(&input.ty.kind, TypeKind::Choice(words) if words.iter().any(|known| known.text == word));
         let inputs: Vec<&'a Input> = inputs.collect();
+        let takes_nodes = inputs.iter().any(|input| matches!(input.ty.kind, TypeKind::Node { .. }));
         for argument in given {
             if let Wire::Word(word, at) = &argument.wire
                 && !inputs.iter().any(|input| chooses(word, input))
+                && !(takes_nodes && !self.callables_of(f.module, word).is_empty())
             {
                 self.unknown_value(f, word, *at);
             }

@@ -334,7 +334,9 @@ fn check_sheet(file: &str, diagram: &Diagram, sheet: &Sheet) {
     }
     for (wire, stretches) in diagram.wires.iter().zip(&sheet.wires) {
         let [from, to] = [boxes[wire.from.block], boxes[wire.to.block]];
-        assert!(from[2] < to[0], "{file}: a wire runs back in {}", diagram.title);
+        // A wrong file may hold a ring.
+        let may_run_back = file.contains("tests/errors");
+        assert!(may_run_back || from[2] < to[0], "{file}: a wire runs back in {}", diagram.title);
         assert!(stretches.iter().all(|stretch| stretch.from <= stretch.to), "{file}: {stretches:?}");
         for stretch in &stretches[1..stretches.len() - 1] {
             let hits = |b: &&[f64; 4]| {
