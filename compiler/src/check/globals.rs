@@ -117,6 +117,8 @@ impl<'a> Checker<'a> {
                 }
             }
             if !f.steps.is_empty() {
+                // Params first, or a bake would decide the order of those it reads.
+                f.steps.sort_by_key(|step| !matches!(step.target, Target::Param(_)));
                 self.sort(&mut f);
                 self.run(f);
             }

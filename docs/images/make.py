@@ -1,0 +1,65 @@
+"""Draws the pictures of the README and the guide that the command draws: python3 docs/images/make.py
+
+Needs target/release/texgraph and Pillow. Every picture is rendered twice as large as it is shown.
+"""
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+from PIL import Image
+
+IMAGES = Path(__file__).parent
+ROOT = IMAGES.parent.parent
+COMMAND = ROOT / "target/release/texgraph"
+
+
+def render(what, side):
+    """A texture, node or wire (`FILE:NAME`) as a picture of that side."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "out.png"
+        size = f"{2 * side}x{2 * side}"
+        subprocess.run([COMMAND, "render", what, "-o", out, "--size", size], cwd=ROOT, check=True)
+        return Image.open(out).convert("RGB").resize((side, side), Image.Resampling.BOX)
+
+
+def save(picture, name):
+    """As a PNG where few colours make it small, else as a JPEG."""
+    if name.endswith(".png"):
+        picture.save(IMAGES / name, optimize=True)
+    else:
+        picture.save(IMAGES / name, quality=88, optimize=True)
+
+
+def examples():
+    for name in ["stamps.jpg", "terrain.jpg", "weave.jpg", "truchet.jpg"]:
+        save(render(f"examples/{name.split('.')[0]}.tex", 512), name)
+
+
+def guide():
+    """Every block of the guide that declares a texture whose picture the guide shows."""
+    text = (ROOT / "docs/guide.md").read_text()
+    for block in re.findall(r"```tex\n(.*?)```", text, re.S):
+        texture = re.search(r"^texture (\w+)", block, re.M)
+        if texture and f"images/{texture[1]}.png" in text:
+            with tempfile.TemporaryDirectory() as folder:
+                file = Path(folder) / "block.tex"
+                file.write_text(block)
+                save(render(file, 340), f"{texture[1]}.png")
+
+
+def wires():
+    names = ["truchet.cell", "truchet.at", "truchet.turn", "truchet"]
+    strip = Image.new("RGB", (4 * 240 + 3 * 8, 240), "white")
+    for i, name in enumerate(names):
+        strip.paste(render(f"examples/truchet.tex:{name}", 240), (i * 248, 0))
+    save(strip, "wires.png")
+
+
+if __name__ == "__main__":
+    if not COMMAND.exists():
+        sys.exit("build it first: cargo build --release")
+    examples()
+    guide()
+    wires()
