@@ -85,8 +85,13 @@ fn the_files_of_the_architecture_are_there() {
         // `compiler/src/contract.rs`, `manifest.rs`: the second stands beside the first.
         let cell = row.split(" |").next().unwrap_or_default();
         for name in cell.split('`').filter(|part| part.contains(['/', '.'])) {
-            let path = if name.contains("*.") { Path::new(name).parent().unwrap_or(Path::new("")) } else { Path::new(name) };
-            let known = [root().join(path), root().join(&folder).join(path), root().join("compiler").join(path)];
+            let path = if name.contains("*.") {
+                Path::new(name).parent().unwrap_or(Path::new(""))
+            } else {
+                Path::new(name)
+            };
+            let known =
+                [root().join(path), root().join(&folder).join(path), root().join("compiler").join(path)];
             assert!(known.iter().any(|path| path.exists()), "{name} is nowhere");
             folder = path.parent().unwrap_or(Path::new("")).to_owned();
             found += 1;
@@ -99,7 +104,8 @@ fn the_files_of_the_architecture_are_there() {
 fn the_function_of_the_tiling_is_as_embedding_shows() {
     let text = page("docs/embedding.md");
     let program = example("tiling", Form::Functions);
-    let heads: Vec<&str> = blocks(&text, "wgsl").into_iter().filter(|block| block.starts_with("fn ")).collect();
+    let heads: Vec<&str> =
+        blocks(&text, "wgsl").into_iter().filter(|block| block.starts_with("fn ")).collect();
     assert_eq!(heads.len(), 1);
     let wgsl = &program.texture().wgsl;
     assert!(wgsl.contains(&format!("{} {{", heads[0].trim_end())), "{wgsl}");
@@ -124,7 +130,8 @@ fn the_passes_of_the_terrain_are_as_embedding_shows() {
         let read: Vec<String> = pass.reads.iter().map(|(resource, _)| resource.to_string()).collect();
         let reads = if read.is_empty() { String::new() } else { format!("{} `pixels`", read.join(", ")) };
         let params: Vec<String> = pass.params.iter().map(|param| format!("`{param}`")).collect();
-        let cells = [format!("`{}`", pass.name), bake, reads, params.join(", "), format!("`{}`", pass.shader)];
+        let cells =
+            [format!("`{}`", pass.name), bake, reads, params.join(", "), format!("`{}`", pass.shader)];
         format!("| {} |", cells.join(" | ")).replace("  ", " ")
     };
     for pass in &manifest.passes {

@@ -248,7 +248,7 @@ impl<'a> Checker<'a> {
         for argument in given {
             if let Wire::Word(word, at) = &argument.wire
                 && !inputs.iter().any(|input| chooses(word, input))
-                && !(takes_nodes && !self.callables_of(f.module, word).is_empty())
+                && (!takes_nodes || self.callables_of(f.module, word).is_empty())
             {
                 self.unknown_value(f, word, *at);
             }

@@ -3,7 +3,7 @@
 //! number of the step a constant, so a one-octave fBm has no loop. Functions that nothing needs are
 //! dropped.
 //!
-//! What is taken over is decided for whole functions beforehand (see [`Plan`]), folds are decided
+//! What is taken over is decided for whole functions beforehand (see `Plan`), folds are decided
 //! when they are met: only then it is known what their steps have become.
 
 mod plan;
