@@ -129,9 +129,11 @@ impl<'t, 'a> Look<'t, 'a> {
             "E0106" => self.no_output(diagnostic),
             "E0107" => self.no_value(diagnostic),
             "E0110" if self.is_library_name() => self.unknown_value(diagnostic),
-            "E0201" | "E0203" | "E0208" | "E0209" | "E0212" | "E0213" | "E0219" | "E0222" | "E0223"
-            | "E0224" | "E0225" => self.types(diagnostic),
-            "E0204" | "E0205" | "E0206" | "E0207" | "E0215" => self.in_call(),
+            "E0104" => self.ring(),
+            "E0109" => self.own_call(),
+            "E0105" | "E0201" | "E0203" | "E0208" | "E0209" | "E0212" | "E0213" | "E0219" | "E0222"
+            | "E0223" | "E0224" | "E0225" => self.types(diagnostic),
+            "E0204" | "E0205" | "E0206" | "E0207" | "E0215" | "E0228" | "E0229" => self.in_call(),
             "E0220" => self.no_dimension(),
             _ => Vec::new(),
         }

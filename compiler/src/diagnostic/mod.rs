@@ -100,6 +100,17 @@ impl Diagnostic {
         self
     }
 
+    /// The same for who called a node of the library: what is said of its text is said of the call.
+    #[must_use]
+    pub fn called_from(mut self, call: Place, node: &str) -> Diagnostic {
+        self.related.insert(0, (self.place, std::mem::take(&mut self.label)));
+        self.place = call;
+        self.message = format!("`{node}` can't be called like this: {}", self.message);
+        self.label = "called here".to_owned();
+        (self.help, self.suggestion) = (None, None);
+        self
+    }
+
     /// With a likely mend.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
