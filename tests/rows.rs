@@ -144,7 +144,8 @@ fn off(intrinsic: Intrinsic, arguments: &[Constant], i: usize, drawn: f64) -> Op
     let near = |arguments: &[Constant]| {
         let right = intrinsic.evaluate(arguments);
         let bound = bounds::bound(name, arguments, &right, i);
-        let right = if right.scalar() == Scalar::Float { f64::from(right.float(i)) } else { f64::from(right.int(i)) };
+        let right =
+            if right.scalar() == Scalar::Float { f64::from(right.float(i)) } else { f64::from(right.int(i)) };
         drawn.is_finite() && (drawn == right || (drawn - right).abs() <= bound)
     };
     if near(arguments) || near(&flushed) {

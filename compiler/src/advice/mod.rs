@@ -18,7 +18,7 @@ mod values;
 
 pub use brackets::forgotten as forgotten_brackets;
 
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Place, Suggestion};
 use crate::module::Modules;
 use names::Names;
 use std::collections::BTreeMap;
@@ -40,6 +40,10 @@ pub fn advise(modules: &Modules, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic
     first.into_iter().for_each(|file| texts.read(file));
     let mut diagnostics = consequences::leave_out(&texts, diagnostics);
     for diagnostic in diagnostics.iter_mut().take(MOST) {
+        if let Some((first, second)) = diagnostic.exchange {
+            let edits = vec![(first, texts.text(second).to_owned()), (second, texts.text(first).to_owned())];
+            diagnostic.suggestion = Some(Suggestion { edits, is_sure: false });
+        }
         if let Some(look) = texts.look(diagnostic) {
             let related = look.mend(diagnostic);
             show(diagnostic, related);
