@@ -289,6 +289,18 @@ fn a_users_name_wins_and_the_library_does_not_see_it() {
     );
 }
 
+/// "… the nearest callable": a user's node is called, and is wrong, even where the library's of that
+/// name would take the other arguments.
+#[test]
+fn a_users_name_wins_whatever_the_other_arguments_are() {
+    let own = "node clamp(x: float, low: int, high: int) -> (y: float) {\n    y = x * low * high\n}\n\n";
+    let main = format!("{own}{}", texture("vec4(clamp(uv.x, 0.25, 1))"));
+    assert_eq!(error(&[("main.tex", &main)]), ("E0201", "main.tex: 0.25".into()));
+    // Where the first argument is none of ours, the library's is the nearest that takes it.
+    let main = format!("{own}{}", texture("vec4(clamp(uv, 0.25, 1.0), 0.0, 1.0)"));
+    compiled(&[("main.tex", &main)]);
+}
+
 /// The same for what an import declares.
 #[test]
 fn an_imports_name_wins_over_the_librarys() {

@@ -55,6 +55,7 @@ pub(crate) fn explain(scan: &Scan<'_>, tokens: Range<usize>, failure: Failure) -
         .or_else(|| place.space())
         .or_else(|| place.lambda())
         .or_else(|| place.missing_else())
+        .or_else(|| place.missing_if())
         .or_else(|| place.side_by_side())
         .or_else(|| place.not_an_assignment())
         .or_else(|| place.keyword())
@@ -172,6 +173,12 @@ impl<'a, 's> Place<'a, 's> {
         let first = match self.text_at(-1) {
             // `q1.0`
             "." => self.span_at(-2),
+            // `0.count`
+            _ if self.text_at(-2) == "."
+                && self.at(-3).is_some_and(|token| token.kind == TokenKind::Number) =>
+            {
+                self.span_at(-3)
+            }
             // `f(x)), y)`: one of them closes too much.
             ")" if self.text == "," => self.first_of_row(),
             _ => None,

@@ -10,11 +10,8 @@ use texgraph_grammar::syntax::{Dim, Signature, Type, TypeKind};
 pub const BANDS: usize = 16;
 
 /// The places in the lists that constant arguments begin at, by how many of them are constant.
-const CONSTANT_PLACES: [&[usize]; 3] = [
-    &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
-    &[0, 3, 4, 10, 14, 15],
-    &[0, 3, 4, 14],
-];
+const CONSTANT_PLACES: [&[usize]; 3] =
+    [&[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15], &[0, 3, 4, 10, 14, 15], &[0, 3, 4, 14]];
 
 /// A type of the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,7 +119,9 @@ impl Case {
             .inputs
             .iter()
             .enumerate()
-            .map(|(i, shape)| format!("{:?}{}{}", shape.0, shape.1, if self.open.contains(&i) { "" } else { " constant" }))
+            .map(|(i, shape)| {
+                format!("{:?}{}{}", shape.0, shape.1, if self.open.contains(&i) { "" } else { " constant" })
+            })
             .collect();
         format!("{}({})", self.name, inputs.join(", "))
     }
@@ -144,7 +143,10 @@ impl Case {
                 before *= COUNT;
                 format!("cell.y / {} % {COUNT}", before / COUNT)
             };
-            text.push_str(&format!("    let at{i}_ = {at}\n    let open{i}_ = {}\n", picked(self.inputs[*i], &format!("at{i}_"))));
+            text.push_str(&format!(
+                "    let at{i}_ = {at}\n    let open{i}_ = {}\n",
+                picked(self.inputs[*i], &format!("at{i}_"))
+            ));
         }
         text.push_str(&format!("    let result = {}\n", self.choice()));
         text.push_str(&self.outputs());

@@ -14,7 +14,10 @@ use texgraph_grammar::syntax::{Node, Span};
 const UNKNOWN: [&str; 3] = ["E0101", "E0102", "E0110"];
 
 /// What is said of a call's arguments, or of the names that take its outputs.
-const OF_CALLS: [&str; 9] = ["E0201", "E0203", "E0204", "E0205", "E0206", "E0207", "E0212", "E0215", "E0223"];
+const OF_CALLS: [&str; 13] = [
+    "E0201", "E0203", "E0204", "E0205", "E0206", "E0207", "E0212", "E0215", "E0222", "E0223", "E0228",
+    "E0229", "E0230",
+];
 
 /// What is said of a value of a wrong type, or of one that lacks a field or a method.
 const OF_TYPES: [&str; 11] =
@@ -163,7 +166,7 @@ fn callee<'a>(look: &Look<'_, 'a>) -> Option<&'a Node> {
 pub(super) fn site<'t, 'a>(look: &Look<'t, 'a>) -> Option<&'t Site<'a>> {
     let argument = || look.names.argument(look.span()).map(|(site, _)| site);
     match look.code {
-        "E0205" => look.names.call(look.span()),
+        "E0205" => look.names.call(look.span()).or_else(argument),
         "E0212" => look.names.call(look.names.taken_apart(look.span())?),
         code if OF_CALLS.contains(&code) => argument().or_else(|| look.names.call(look.span())),
         _ => None,

@@ -18,7 +18,7 @@ mod values;
 
 pub use brackets::forgotten as forgotten_brackets;
 
-use crate::diagnostic::{Diagnostic, Place};
+use crate::diagnostic::{Diagnostic, Place, Suggestion};
 use crate::module::Modules;
 use names::Names;
 use std::collections::BTreeMap;
@@ -40,6 +40,10 @@ pub fn advise(modules: &Modules, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic
     first.into_iter().for_each(|file| texts.read(file));
     let mut diagnostics = consequences::leave_out(&texts, diagnostics);
     for diagnostic in diagnostics.iter_mut().take(MOST) {
+        if let Some((first, second)) = diagnostic.exchange {
+            let edits = vec![(first, texts.text(second).to_owned()), (second, texts.text(first).to_owned())];
+            diagnostic.suggestion = Some(Suggestion { edits, is_sure: false });
+        }
         if let Some(look) = texts.look(diagnostic) {
             let related = look.mend(diagnostic);
             show(diagnostic, related);
@@ -129,9 +133,11 @@ impl<'t, 'a> Look<'t, 'a> {
             "E0106" => self.no_output(diagnostic),
             "E0107" => self.no_value(diagnostic),
             "E0110" if self.is_library_name() => self.unknown_value(diagnostic),
-            "E0201" | "E0203" | "E0208" | "E0209" | "E0212" | "E0213" | "E0219" | "E0222" | "E0223"
-            | "E0224" | "E0225" => self.types(diagnostic),
-            "E0204" | "E0205" | "E0206" | "E0207" | "E0215" => self.in_call(),
+            "E0104" => self.ring(),
+            "E0109" => self.own_call(),
+            "E0105" | "E0201" | "E0203" | "E0208" | "E0209" | "E0212" | "E0213" | "E0219" | "E0222"
+            | "E0223" | "E0224" | "E0225" => self.types(diagnostic),
+            "E0204" | "E0205" | "E0206" | "E0207" | "E0215" | "E0228" | "E0229" => self.in_call(),
             "E0220" => self.no_dimension(),
             _ => Vec::new(),
         }

@@ -89,8 +89,10 @@ pub struct Names<'a> {
     /// The call that an expression is, and the call and position that it is an argument of.
     calls: FxHashMap<Span, usize>,
     arguments: FxHashMap<Span, (usize, usize)>,
-    /// The output that an expression is assigned to.
+    /// The output, accumulator, param or input that an expression is assigned to.
     assigned: FxHashMap<Span, &'a Name>,
+    /// The operator beside an operand.
+    operators: FxHashMap<Span, Span>,
     /// The value that names in brackets take apart.
     taken_apart: FxHashMap<Span, Span>,
     /// What stands before the dot of a field or a method.
@@ -184,6 +186,11 @@ impl<'a> Names<'a> {
         Some((self.sites.get(*site)?, *position))
     }
 
+    /// The operator beside an operand.
+    pub fn operator(&self, operand: Span) -> Option<Span> {
+        self.operators.get(&operand).copied()
+    }
+
     /// What stands before the dot of a field or a method.
     pub fn base(&self, field: Span) -> Option<Span> {
         self.bases.get(&field).copied()
@@ -194,7 +201,8 @@ impl<'a> Names<'a> {
         self.taken_apart.get(&pattern).copied()
     }
 
-    /// The output or accumulator that an expression is assigned to.
+    /// The output or accumulator that an expression is assigned to, or the param or input whose
+    /// default or range it is.
     pub fn assigned(&self, place: Span) -> Option<&'a Name> {
         self.assigned.get(&place).copied()
     }
@@ -258,9 +266,12 @@ impl<'a> Names<'a> {
         match &item.kind {
             ItemKind::Use { .. } => {}
             ItemKind::Let { value, .. } => self.expr(value),
-            ItemKind::Param { default, range, .. } => {
-                self.expr(default);
-                range.iter().flat_map(|range| [&range.start, &range.end]).for_each(|end| self.expr(end));
+            ItemKind::Param { name, default, range, .. } => {
+                let ends = range.iter().flat_map(|range| [&*range.start, &*range.end]);
+                for value in std::iter::once(default).chain(ends) {
+                    self.assigned.insert(value.span, name);
+                    self.expr(value);
+                }
             }
             ItemKind::Node(node) | ItemKind::Texture { node, .. } => self.in_node(item, node),
         }
@@ -276,7 +287,12 @@ impl<'a> Names<'a> {
         for output in &node.outputs {
             self.bind(&output.name, output.name.span.to(output.ty.span), at(Kind::Output));
         }
-        node.inputs.iter().filter_map(|input| input.default.as_ref()).for_each(|default| self.expr(default));
+        for input in &node.inputs {
+            if let Some(default) = &input.default {
+                self.assigned.insert(default.span, &input.name);
+                self.expr(default);
+            }
+        }
         let outputs = node.outputs.iter().map(|output| &output.name).collect();
         self.body_of(Statements { node: Some(node), body: &node.body, outputs });
         self.scopes.pop();
@@ -386,7 +402,13 @@ impl<'a> Names<'a> {
             ExprKind::Unary { operand, .. } => self.expr(operand),
             ExprKind::Chain { first, links } => {
                 self.expr(first);
-                links.iter().for_each(|link| self.expr(&link.operand));
+                let mut before = first.span;
+                for link in links {
+                    self.operators.entry(before).or_insert(link.operator_span);
+                    self.operators.insert(link.operand.span, link.operator_span);
+                    self.expr(&link.operand);
+                    before = before.to(link.operand.span);
+                }
             }
             ExprKind::If { arms, otherwise } => {
                 arms.iter().flat_map(|(condition, arm)| [condition, arm]).for_each(|e| self.expr(e));

@@ -26,7 +26,8 @@ impl Look<'_, '_> {
     pub(super) fn row(&self, row: &[&Name]) -> Option<(Span, String)> {
         let (first, last) = (self.names.bound(row.first()?)?, self.names.bound(row.last()?)?);
         let label = if row.len() == 1 { "this is declared" } else { "these are declared" };
-        Some((first.span.to(last.span), label.to_owned()))
+        let whole = first.span.to(last.span);
+        Some((whole, label.to_owned())).filter(|_| !self.text(whole).contains('\n'))
     }
 
     /// An output without a value: the end of the body that should give it.

@@ -4,7 +4,10 @@ use super::names::{Binding, Kind, contains};
 use super::{Look, Related};
 use crate::diagnostic::{Diagnostic, Suggestion, names as sentences};
 use crate::input::INPUTS;
-use texgraph_grammar::syntax::{Node, Span};
+use texgraph_grammar::syntax::{Node, Span, Statement};
+
+/// What is said of a binding that nobody reads.
+const UNUSED: &str = " and never used";
 
 impl<'t, 'a> Look<'t, 'a> {
     /// A value that nobody declared: an output of a wire, a name near it, the one name that nobody
@@ -34,7 +37,26 @@ impl<'t, 'a> Look<'t, 'a> {
         if near.is_none() {
             related.extend(self.inputs(diagnostic, name));
         }
+        if diagnostic.help.is_none() && related.iter().all(|(_, label)| !label.ends_with(UNUSED)) {
+            related.extend(self.new_wire(diagnostic, name));
+        }
         related
+    }
+
+    /// Where a wire of this name could be declared: before the statement that reads it.
+    fn new_wire(&self, diagnostic: &mut Diagnostic, name: &str) -> Option<(Span, String)> {
+        let statements = &self.names.body(self.span())?.body.statements;
+        let whole = |statement: &Statement| match statement {
+            Statement::Let { span, .. } => *span,
+            Statement::Assign { name, value } => name.span.to(value.span),
+        };
+        let statement = statements.iter().find(|statement| contains(whole(statement), self.span()))?;
+        let first = match statement {
+            Statement::Let { span, .. } => Span { start: span.start, end: span.start + 3 },
+            Statement::Assign { name, .. } => name.span,
+        };
+        diagnostic.help = Some(format!("declare it: `let {name} = …`"));
+        Some((first, format!("a `let {name} = …` would stand before this")))
     }
 
     /// The values that can be read here, but for what the statement itself binds.
@@ -132,6 +154,6 @@ fn only_unread<'n, 'a>(among: &[&'n Binding<'a>]) -> Option<&'n Binding<'a>> {
 }
 
 fn declared(binding: &Binding) -> (Span, String) {
-    let unread = if binding.reads == 0 { " and never used" } else { "" };
+    let unread = if binding.reads == 0 { UNUSED } else { "" };
     (binding.span, format!("`{}` is declared here{unread}", binding.name.text))
 }

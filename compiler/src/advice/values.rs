@@ -4,7 +4,7 @@ use super::consequences::{site, value};
 use super::names::{Binding, Kind, contains};
 use super::{Look, Related};
 use crate::diagnostic::{Diagnostic, Suggestion};
-use texgraph_grammar::syntax::{Name, Span};
+use texgraph_grammar::syntax::{Name, Node, Span};
 
 impl Look<'_, '_> {
     /// A value of a wrong type.
@@ -24,6 +24,10 @@ impl Look<'_, '_> {
         }
         let mut related: Related = values.into_iter().filter_map(|value| self.source(value)).collect();
         related.extend(self.names.base(self.span()).map(|base| (base, "of this".to_owned())));
+        if self.code == "E0225" {
+            let operator = self.names.operator(self.span());
+            related.extend(operator.map(|operator| (operator, "wants single numbers".to_owned())));
+        }
         if matches!(self.code, "E0201" | "E0213" | "E0222" | "E0223") {
             related.extend(self.wanted_by_input().or_else(|| self.wanted_by_output()));
         }
@@ -54,7 +58,9 @@ impl Look<'_, '_> {
 
     /// Names that take outputs apart in another order than they come in.
     fn in_order(&self, diagnostic: &mut Diagnostic) {
-        let Some(part) = self.names.meaning(self.span()).filter(|binding| binding.is_part) else { return };
+        let read = self.names.read_within(self.span()).into_iter();
+        let mut read = read.filter_map(|wire| self.names.bindings.get(wire));
+        let Some(part) = read.find(|binding| binding.is_part) else { return };
         let node = self.names.call(part.value).and_then(|site| self.texts.node(&site.call.name.text));
         let outputs = node.map_or(&[][..], |node| &node.outputs);
         let outputs: Vec<&str> = outputs.iter().map(|output| output.name.text.as_str()).collect();
@@ -104,12 +110,13 @@ impl Look<'_, '_> {
         Some((input.name.span.to(input.ty.span), format!("`{}` is declared here", input.name.text)))
     }
 
-    /// The output or accumulator that a value is assigned to.
+    /// The output or accumulator that a value is assigned to, or the param or input whose default it
+    /// is.
     fn wanted_by_output(&self) -> Option<(Span, String)> {
         let name = self.names.assigned(self.span())?;
         let declares = |binding: &&Binding| {
-            let is_named = binding.kind == Kind::Output && binding.name.text == name.text;
-            is_named && contains(binding.scope, self.span())
+            let has_type = matches!(binding.kind, Kind::Output | Kind::Item | Kind::Input);
+            has_type && binding.name.text == name.text && contains(binding.scope, self.span())
         };
         let output = self.names.bindings.iter().rfind(declares)?;
         Some((output.span, format!("`{}` is declared here", name.text)))
@@ -117,10 +124,10 @@ impl Look<'_, '_> {
 
     /// What is wrong with an argument may be wrong with the name of what is called, or with its head.
     pub(super) fn in_call(&self) -> Related {
-        let Some(site) = site(self) else { return Vec::new() };
+        let base = self.names.base(self.span());
+        let mut related: Related = base.map(|base| (base, "of this".to_owned())).into_iter().collect();
+        let Some(site) = site(self) else { return related };
         let name = site.call.name.span;
-        let mut related: Related = Vec::new();
-        related.extend(self.names.base(self.span()).map(|base| (base, "of this".to_owned())));
         if !contains(self.span(), name) {
             related.push((name, "in this call".to_owned()));
         }
@@ -129,6 +136,19 @@ impl Look<'_, '_> {
             related.extend(self.row(&inputs));
         }
         related
+    }
+
+    /// A wire that needs itself: where it is declared.
+    pub(super) fn ring(&self) -> Related {
+        let wire = self.names.meaning(self.span());
+        wire.map(|wire| (wire.span, format!("`{}` is declared here", wire.name.text))).into_iter().collect()
+    }
+
+    /// A node that calls itself: its head.
+    pub(super) fn own_call(&self) -> Related {
+        let node = self.names.call(self.span()).and_then(|site| self.names.callee(site));
+        let head = |node: &Node| (node.name.span, format!("`{}` is declared here", node.name.text));
+        node.map(head).into_iter().collect()
     }
 
     /// A dimension that nobody declared: those that are.

@@ -1,5 +1,6 @@
 //! Arguments to inputs: by position, by name, by default; dimensions bound; values converted.
 
+use super::call::accepts;
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;
 use super::{Checker, Frame};
@@ -45,6 +46,9 @@ pub struct Head<'s> {
     pub module: usize,
 }
 
+/// Inputs up to which all ways to exchange two arguments are tried.
+const MOST_EXCHANGED: usize = 8;
+
 /// A call with everything bound.
 pub struct Bound {
     /// The dimension variables.
@@ -72,14 +76,49 @@ impl<'a> Checker<'a> {
         let dims = self.bind_dims(f, head, dim, &slots, place)?;
         let mut bound = Bound { dims, wires: Vec::new(), places: Vec::new() };
         let mut complete = true;
-        for (input, slot) in head.inputs.iter().zip(slots) {
+        let said = self.diagnostics.len();
+        for (input, slot) in head.inputs.iter().zip(&slots) {
             let at = slot.as_ref().map_or(place, |given| given.place);
-            let wire = self.argument(f, head, input, slot, &bound, place);
+            let wire = self.argument(f, head, input, slot.clone(), &bound, place);
             complete &= !matches!(wire, Wire::Unknown);
             bound.wires.push(wire);
             bound.places.push(at);
         }
+        if self.diagnostics.len() > said && slots.len() <= MOST_EXCHANGED {
+            self.exchanged(f, head, &slots, said);
+        }
         complete.then_some(bound)
+    }
+
+    /// Says so where the arguments fit once two of them are exchanged.
+    fn exchanged(&mut self, f: &Frame<'a>, head: Head<'a>, slots: &[Option<Given<'a>>], said: usize) {
+        let fits = |slot: usize, from: usize| match (head.inputs.get(slot), slots.get(from)) {
+            (Some(input), Some(Some(given))) => accepts(f, input, &Given { name: None, ..given.clone() }),
+            _ => true,
+        };
+        let given: Vec<usize> = (0..slots.len()).filter(|i| slots[*i].is_some()).collect();
+        let pairs = given.iter().flat_map(|a| given.iter().map(move |b| (*a, *b)));
+        let mends = |(a, b): &(usize, usize)| {
+            let from = |slot: usize| {
+                if slot == *a {
+                    *b
+                } else if slot == *b {
+                    *a
+                } else {
+                    slot
+                }
+            };
+            a < b && given.iter().all(|slot| fits(*slot, from(*slot)))
+        };
+        let mut mending = pairs.filter(mends);
+        let (Some((a, b)), None) = (mending.next(), mending.next()) else { return };
+        if let (Some(first), Some(second)) = (&slots[a], &slots[b]) {
+            // What is wrong with the second is the same slip.
+            let names = [a, b].map(|slot| head.inputs[slot].name.text.as_str());
+            let error = self.diagnostics.get_mut(said);
+            error.into_iter().for_each(|error| error.exchange((first.place, second.place), names));
+            self.diagnostics.truncate(said + 1);
+        }
     }
 
     /// Sorts arguments into the inputs' slots.

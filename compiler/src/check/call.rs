@@ -226,15 +226,27 @@ impl<'a> Checker<'a> {
             candidates.iter().filter_map(|callable| Some((*callable, self.head(*callable)?))).collect();
         let fits =
             |head: &Head<'a>, n: usize| head.inputs.iter().zip(&given).take(n).all(|(i, g)| accepts(f, i, g));
-        let chosen = heads
-            .iter()
+        // The nearest that takes the first argument; of those equally near, one that takes all.
+        let nearest =
+            heads.iter().find(|(_, head)| fits(head, 1)).map(|(callable, _)| self.distance(f, *callable));
+        let near = || heads.iter().filter(|(callable, _)| Some(self.distance(f, *callable)) == nearest);
+        let chosen = near()
             .find(|(_, head)| given.len() <= head.inputs.len() && fits(head, given.len()))
-            .or_else(|| heads.iter().find(|(_, head)| fits(head, 1)))
+            .or_else(|| near().find(|(_, head)| fits(head, 1)))
             .copied();
         match (chosen, heads.as_slice()) {
             (Some((callable, head)), _) => self.apply(f, callable, head, callee.dim, given, place),
             (None, [(callable, head)]) => self.apply(f, *callable, *head, callee.dim, given, place),
             (None, _) => self.no_receiver(f, &heads, callee, &given, place),
+        }
+    }
+
+    /// How far a callable is: of the same file, of another of the user's, of the library.
+    fn distance(&self, f: &Frame<'a>, callable: Callable) -> u8 {
+        match callable {
+            Callable::Node(module, _) if module == f.module => 0,
+            Callable::Node(module, _) if module >= self.library.modules().len() => 1,
+            _ => 2,
         }
     }
 
@@ -246,6 +258,7 @@ impl<'a> Checker<'a> {
         let inputs: Vec<&'a Input> = inputs.collect();
         let takes_nodes = inputs.iter().any(|input| matches!(input.ty.kind, TypeKind::Node { .. }));
         for argument in given {
+            // The name of a node may be right.
             if let Wire::Word(word, at) = &argument.wire
                 && !inputs.iter().any(|input| chooses(word, input))
                 && (!takes_nodes || self.callables_of(f.module, word).is_empty())
@@ -436,7 +449,7 @@ fn as_value(wire: &Wire) -> Option<Value> {
 }
 
 /// Whether an input may take an argument, as far as that can be told before dimensions are bound.
-fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, given: &Given<'_>) -> bool {
+pub(super) fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, given: &Given<'_>) -> bool {
     if given.name.is_some() {
         return true;
     }

@@ -49,9 +49,10 @@ impl<'a> Checker<'a> {
         if let ([], [(only, _)]) = (conditions, arms.as_slice()) {
             return only.clone();
         }
-        if arms.iter().any(|(wire, _)| {
-            matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::Text(_) | Wire::None | Wire::Node(_))
-        }) {
+        if arms
+            .iter()
+            .any(|(wire, _)| matches!(wire, Wire::Resource(_) | Wire::View(_) | Wire::None | Wire::Node(_)))
+        {
             let place = conditions.first().map_or(Place::default(), |(_, place)| *place);
             return self.report(f, rates::choice_not_constant(place));
         }

@@ -62,6 +62,8 @@ pub struct Frame<'a> {
     pub(super) foreign: u32,
     /// Index of the frame that waits for this one.
     pub(super) parent: Option<usize>,
+    /// The call in a user's file that leads here.
+    pub(super) caller: Option<Place>,
     /// The statement whose value is being made; names made-up resources.
     pub(super) current: String,
 }
@@ -89,6 +91,7 @@ impl<'a> Frame<'a> {
             progress: FxHashMap::default(),
             foreign: 0,
             parent: None,
+            caller: None,
             current: String::new(),
         }
     }

@@ -103,6 +103,9 @@ impl<'a> Checker<'a> {
             f.module = module;
             if module >= self.library.modules().len() {
                 f.repeated = self.check_items(module);
+                let items = self.modules[module].tree.items.iter().filter_map(value_of);
+                let repeated = items.filter(|name| f.repeated.contains(&name.span.start));
+                f.doubtful = repeated.map(|name| name.text.as_str()).collect();
             }
             f.builder = Builder::new(self.modules[module].path.clone());
             for item in &self.modules[module].tree.items {
@@ -277,6 +280,9 @@ impl<'a> Checker<'a> {
 
     /// The first declaration of a name holds.
     fn declare_value(&mut self, f: &mut Frame<'a>, name: &'a Name, global: Global) {
+        // Nobody knows which of two is meant where the name is read.
+        let is_doubtful = f.doubtful.contains(name.text.as_str());
+        let global = if is_doubtful { Global::Unknown } else { global };
         if !f.repeated.contains(&name.span.start) {
             self.globals[f.module].insert(name.text.clone(), global.clone());
         }

@@ -170,6 +170,13 @@ impl<'a> Checker<'a> {
 
     fn report(&mut self, f: &mut Frame<'a>, diagnostic: Diagnostic) -> Wire {
         f.failed = true;
+        // The library is right: what is wrong in it was called wrongly.
+        let diagnostic = match (f.caller, f.node) {
+            (Some(place), Some(node)) if f.module < self.library.modules().len() => {
+                diagnostic.called_from(place, &node.name.text)
+            }
+            _ => diagnostic,
+        };
         self.diagnostics.push(diagnostic);
         Wire::Unknown
     }
@@ -227,7 +234,11 @@ impl<'a> Checker<'a> {
             self.full = true;
             return None;
         }
-        Some(self.frame(node, key.clone(), Some(parent)))
+        let mut frame = self.frame(node, key.clone(), Some(parent));
+        let caller = stack.get(parent);
+        let is_user = caller.is_some_and(|caller| caller.module >= self.library.modules().len());
+        frame.caller = if is_user { Some(place) } else { caller.and_then(|caller| caller.caller) };
+        Some(frame)
     }
 
     /// A frame with the inputs of its node in scope.
@@ -342,8 +353,10 @@ impl<'a> Checker<'a> {
             // The outputs that got no name may be read by their own: that is the same slip.
             known.iter().for_each(|name| f.unknown.insert(name));
         }
+        let fits = outputs.len() == names.len();
         for (i, name) in names.iter().enumerate() {
-            let wire = outputs.get(i).map_or(Wire::Unknown, |(_, wire)| wire.clone());
+            let output = outputs.get(i).filter(|_| fits);
+            let wire = output.map_or(Wire::Unknown, |(_, wire)| wire.clone());
             self.bind(f, name, wire);
         }
     }

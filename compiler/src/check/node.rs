@@ -33,7 +33,11 @@ impl<'a> Checker<'a> {
             Source::Passed(node) if node.ty == *ty => Wire::Node(node),
             Source::Passed(node) => self.closure(f, input, ty, given.place, |checker, f, arguments| {
                 let node = f.import_node(&node);
-                let callee = Callee { name: "", place: given.place, dim: None };
+                let name = match given.expr.map(|expr| &expr.kind) {
+                    Some(ExprKind::Name(name)) => name.as_str(),
+                    _ => "",
+                };
+                let callee = Callee { name, place: given.place, dim: None };
                 checker.call_passed(f, &node, callee, arguments, given.place)
             }),
             Source::Named(callee, candidates) => {

@@ -55,8 +55,9 @@ impl<'a> Checker<'a> {
                 }
                 Statement::Assign { name, value } => {
                     self.assign(f, node, name);
-                    // That an output has the name of an input is said of the head.
-                    if !is_input(name) || !is_output(node, name) {
+                    // That an output has the name of an input is said of the head, and that an
+                    // input is no output of the assignment.
+                    if !is_input(name) {
                         bound.push(name);
                     }
                     f.steps.push(Step { target: Target::Output(name), value });

@@ -93,7 +93,11 @@ impl<'a> Checker<'a> {
                 if let Some(node) = super::globals::node_of(declared)
                     && !self.made.keys().any(|key| (key.module, key.item) == (module, item))
                 {
+                    let before = self.diagnostics.len();
                     self.alone(module, item, node, true);
+                    // How many steps a fold can have, only a call tells.
+                    let said = self.diagnostics.split_off(before);
+                    self.diagnostics.extend(said.into_iter().filter(|error| error.code != "E0405"));
                 }
                 if let Some(node) = super::globals::node_of(declared) {
                     self.defaults(module, node);

@@ -41,6 +41,8 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// The same as edits that an editor can make.
     pub suggestion: Option<Suggestion>,
+    /// Two places that belong exchanged: whoever has the text makes the edits of it.
+    pub exchange: Option<(Place, Place)>,
 }
 
 /// Edits that make up one likely mend.
@@ -90,6 +92,7 @@ impl Diagnostic {
             related: Vec::new(),
             help: None,
             suggestion: None,
+            exchange: None,
         }
     }
 
@@ -97,6 +100,17 @@ impl Diagnostic {
     #[must_use]
     pub fn because(mut self, message: impl Into<String>) -> Diagnostic {
         self.message = message.into();
+        self
+    }
+
+    /// The same for who called a node of the library: what is said of its text is said of the call.
+    #[must_use]
+    pub fn called_from(mut self, call: Place, node: &str) -> Diagnostic {
+        self.related.insert(0, (self.place, std::mem::take(&mut self.label)));
+        self.place = call;
+        self.message = format!("`{node}` can't be called like this: {}", self.message);
+        self.label = "called here".to_owned();
+        (self.help, self.suggestion) = (None, None);
         self
     }
 
@@ -125,6 +139,13 @@ impl Diagnostic {
     pub fn suggest_name(&mut self, near: &str) {
         self.help = Some(format!("did you mean `{near}`?"));
         self.suggestion = Some(Suggestion::replace(self.place, near));
+    }
+
+    /// Says that two arguments, for inputs of these names, belong exchanged.
+    pub fn exchange(&mut self, places: (Place, Place), [first, second]: [&str; 2]) {
+        self.help =
+            Some(format!("the types fit if the arguments for `{first}` and `{second}` are exchanged"));
+        (self.suggestion, self.exchange) = (None, Some(places));
     }
 
     /// With the edits of a likely mend, if there are any.

@@ -43,6 +43,13 @@ impl Place<'_, '_> {
         begins && is_first_of_line(self.scan, self.index)
     }
 
+    /// The same where pest has read the name of the statement as something else.
+    fn is_behind_statement(&self, close: char) -> bool {
+        let before = self.index.checked_sub(1);
+        let begins = before.is_some_and(|before| is_first_of_line(self.scan, before)) && self.is_name(-1);
+        self.text == "=" && close != '}' && begins
+    }
+
     /// A bracket that is not closed before this token, or closes nothing.
     pub(super) fn bracket(&self) -> Guess {
         let open = self.open_bracket();
@@ -58,7 +65,9 @@ impl Place<'_, '_> {
             TokenKind::Word if self.begins_outside(close) && !self.expects("an expression") => {
                 self.unclosed(open)
             }
-            _ if self.index >= self.tokens.end => self.unclosed(open),
+            _ if self.index >= self.tokens.end || self.is_behind_statement(close) => self.unclosed(open),
+            // A list has no names.
+            _ if self.text == ":" && close == ']' && !self.expects("an expression") => self.unclosed(open),
             // The inputs end here.
             _ if self.text == "->" && close == ')' && !self.expects("an expression") => self.unclosed(open),
             _ => None,
@@ -112,13 +121,17 @@ impl Place<'_, '_> {
 
     /// `(a, b)`: brackets that belong to no call hold one expression.
     pub(super) fn group(&self) -> Guess {
-        let is_full = self.expects("`)`") && !self.expects("`,`") && !self.expects("an expression");
-        if self.text != "," || !is_full {
-            return None;
-        }
-        let open = self.open_bracket().filter(|open| self.scan.text(*open) == "(")?;
-        let help = "these brackets belong to no call; a vector is built by its name, `vec2(x, y)`";
-        let error = self.found(vec!["an operator", "`)`"], Some(help));
+        let open = self.open_bracket()?;
+        let (help, close) = match (self.scan.text(open), self.text) {
+            ("(", ",") => {
+                ("these brackets belong to no call; a vector is built by its name, `vec2(x, y)`", "`)`")
+            }
+            ("(", "=") => ("accumulators stand behind `fold`: `fold (a = 0.0) for i in 0..4 { … }`", "`)`"),
+            ("[", ",") => ("these brackets hold one index", "`]`"),
+            _ => return None,
+        };
+        let is_full = self.expects(close) && !self.expects("`,`") && !self.expects("an expression");
+        let error = is_full.then(|| self.found(vec!["an operator", close], Some(help)))?;
         Some(error.related(Some(open.span), "opened here"))
     }
 

@@ -27,12 +27,35 @@ impl Place<'_, '_> {
                 (TokenKind::Open, _) => depth = depth.saturating_sub(1),
                 (TokenKind::Word, "if") if depth == 0 => {
                     let error = SyntaxError::new(Kind::MissingElse, token.span);
+                    // `} { b }`
+                    if self.text == "{"
+                        || (self.token.kind == TokenKind::Open && !is_first_of_line(self.scan, self.index))
+                    {
+                        return Some(
+                            error.related(Some(self.token.span), "an `else` is missing before this"),
+                        );
+                    }
                     return Some(error.related(self.span_at(-1), "an `else` is missing after this"));
                 }
                 _ => {}
             }
         }
         None
+    }
+
+    /// `x = c { a } else { b }`
+    pub(super) fn missing_if(&self) -> Guess {
+        if self.text != "{" || !self.expects("an assignment") {
+            return None;
+        }
+        let equals = (1..).map_while(|i| Some((i, self.at(-i)?)));
+        let (back, _) = equals.into_iter().find(|(_, token)| self.scan.text(*token) == "=")?;
+        let condition = self.span_at(1 - back)?.to(self.span_at(-1)?);
+        let error = self.found(
+            vec!["an operator", "a new line"],
+            Some("a choice begins with `if`: `if c { a } else { b }`"),
+        );
+        Some(error.related(Some(condition), "is an `if` missing before this?"))
     }
 
     /// `a b`: pest takes the second for the beginning of a statement, and stops behind it.
@@ -96,12 +119,42 @@ impl Place<'_, '_> {
         if !is_statement || is_in_column_0(self.scan.source, self.token) {
             return None;
         }
-        let (place, label) = match self.first_indented() {
-            Some(first) => (Some(first), "a body seems to begin here, without its head"),
-            None => (self.span_at(-1), "the body ends here"),
+        let (place, label) = match (self.orphan(), self.first_indented()) {
+            (Some(orphan), _) => (Some(orphan), "this is indented like the body of a fold that is not there"),
+            (None, Some(first)) => (Some(first), "a body seems to begin here, without its head"),
+            (None, None) => (self.span_at(-1), "the body ends here"),
         };
         let help = "an assignment stands between the braces of a `node` or a `texture`";
         Some(self.found(self.expected.to_vec(), Some(help)).related(place, label))
+    }
+
+    /// The first statement of a block that nobody opens: its lines are further to the right than
+    /// those before it, or than the brace that closes it.
+    fn orphan(&self) -> Option<Span> {
+        // Of each open bracket: the column of its line, and the first statement inside with the last
+        // one's column.
+        let mut open: Vec<(usize, Option<(Span, usize)>)> = Vec::new();
+        let mut line = 0;
+        for index in self.tokens.start..self.index {
+            let token = self.scan.tokens.get(index)?;
+            let begins_line = is_first_of_line(self.scan, index);
+            line = if begins_line { self.scan.column(index) } else { line };
+            let assigns = self.scan.text_of(index + 1) == "=" || self.scan.text(*token) == "let";
+            match (token.kind, open.last_mut()) {
+                (TokenKind::Open, _) => open.push((line, None)),
+                (TokenKind::Close, Some((outer, Some((first, _))))) if begins_line && line > *outer => {
+                    return Some(*first);
+                }
+                (TokenKind::Close, _) => drop(open.pop()),
+                (TokenKind::Word, Some((_, statement))) if begins_line && assigns => match statement {
+                    Some((_, column)) if line > *column => return Some(token.span),
+                    Some((_, column)) => *column = line,
+                    None => *statement = Some((token.span, line)),
+                },
+                _ => {}
+            }
+        }
+        None
     }
 
     /// Where the indented lines before this one begin, if they stand in no body either.
