@@ -52,7 +52,7 @@ fn picture(diagram: &Diagram) -> Result<String, Problem> {
     diagram.to_svg().map_err(|error| {
         let mend = match error {
             DrawError::TooLarge(_) => "draw one of its nodes (`FILE:NODE`), or write a `.dot`",
-            DrawError::TooEntangled => "write a `.dot` and let Graphviz lay it out",
+            DrawError::TooEntangled(_) => "write a `.dot` and let Graphviz lay it out",
         };
         Problem::Input(format!("the diagram can't be drawn: {error}; {mend}"))
     })

@@ -1,20 +1,31 @@
 //! Where everything stands: layers from left to right, by the crate dugong (the algorithm of
 //! Gansner et al., *A Technique for Drawing Directed Graphs*, 1993, as dagre has it).
 //!
-//! It knows nothing of ports, so wires are led here: from port to port through the gaps that the
-//! layout leaves for them between the blocks of each layer.
+//! It knows nothing of ports: wires are led to them by [`super::route`].
 
-use super::shape::{LINE, Shape};
-use super::{Diagram, DrawError, End, Kind, MAX_BLOCKS, Wire};
+use super::route::{Stretch, led, sort_ports, turn};
+use super::shape::Shape;
+use super::{Diagram, DrawError, Kind, MAX_BLOCKS, Wire};
 use dugong::graphlib::{Graph, GraphOptions};
 use dugong::{EdgeLabel, GraphLabel, NodeLabel, RankDir, WorkControl, WorkError};
 
-/// What laying out may cost, in the crate's units: about two seconds. The bound of blocks is met
-/// first unless very many wires are very long.
+/// Wires in a picture at most.
+pub const MAX_WIRES: usize = 4 * MAX_BLOCKS;
+/// What laying out may cost, in the crate's units: about two seconds. The other bounds are met first
+/// unless most wires are very long.
 const MAX_WORK: usize = 60_000_000;
 
-/// Between the layers.
+/// What pulls a wire short. Without any the crate would divide by 0.
+const SLACK: f64 = 0.001;
+
+/// Between two layers, at least.
 const LAYERS: f64 = 56.0;
+/// How much farther for each wire that runs far up or down between them.
+const PER_WIRE: f64 = 6.0;
+/// Between two layers, at most.
+const MOST_APART: f64 = 200.0;
+/// How far up or down is far.
+pub const STEEP: f64 = 60.0;
 /// Between blocks of one layer.
 const BLOCKS: f64 = 18.0;
 /// Between wires that pass a layer.
@@ -40,15 +51,8 @@ pub struct Place {
     pub shape: Shape,
 }
 
-/// A level piece of a wire. From one to the next it runs in a curve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    pub from: f64,
-    pub to: f64,
-    pub y: f64,
-}
-
-type Layered = Graph<NodeLabel, EdgeLabel, GraphLabel>;
+/// What is laid out: blocks and two nodes that hold the ends.
+pub type Layered = Graph<NodeLabel, EdgeLabel, GraphLabel>;
 
 /// Lays a diagram out.
 ///
@@ -58,14 +62,18 @@ pub fn place(diagram: &Diagram) -> Result<Sheet, DrawError> {
     if diagram.blocks.len() > MAX_BLOCKS {
         return Err(DrawError::TooLarge(diagram.blocks.len()));
     }
+    let entangled = DrawError::TooEntangled(diagram.wires.len());
+    if diagram.wires.len() > MAX_WIRES {
+        return Err(entangled);
+    }
     let shapes: Vec<Shape> = diagram.blocks.iter().map(Shape::of).collect();
     let mut graph = layered(diagram, &shapes);
-    dugong::layout_controlled(&mut graph, &mut Budget(MAX_WORK)).map_err(|_| DrawError::TooEntangled)?;
+    dugong::layout_controlled(&mut graph, &mut Budget(MAX_WORK)).map_err(|_| entangled)?;
     let layers = layers(diagram, &shapes, &graph);
-    let mut places = Vec::new();
+    let mut places: Vec<Place> = Vec::new();
     for (block, shape) in shapes.into_iter().enumerate() {
         let middle = middle(&graph, &id(block));
-        let layer = layers.iter().find(|layer| (layer.middle - middle.0).abs() < 1.0);
+        let layer = layers.iter().find(|layer| layer.holds(middle.0));
         let (left, right) = layer.map_or((middle.0, middle.0), |layer| (layer.left, layer.right));
         // What begins stands at the right of its layer, what ends and all between at the left.
         let begins = is_source(diagram, block);
@@ -74,7 +82,9 @@ pub fn place(diagram: &Diagram) -> Result<Sheet, DrawError> {
     }
     sort_ports(diagram, &graph, &mut places);
     let wires = diagram.wires.iter().enumerate();
-    let wires = wires.map(|(i, wire)| led(wire, &places, &layers, &bends(&graph, wire, i))).collect();
+    let mut wires: Vec<Vec<Stretch>> =
+        wires.map(|(i, wire)| led(wire, &places, &layers, &bends(&graph, wire, i))).collect();
+    turn(&mut wires);
     Ok(fitted(Sheet { width: 0.0, height: 0.0, places, wires }))
 }
 
@@ -122,19 +132,36 @@ fn layered(diagram: &Diagram, shapes: &[Shape]) -> Layered {
         }
         if diagram.blocks[block].kind == Kind::Output {
             graph.set_edge_named(id(block), "last", None::<String>, Some(held(1000.0)));
-        } else if ends[block] {
-            // A wire that nobody reads ends before the outputs.
-            let before = EdgeLabel { minlen: 2, ..held(0.0) };
+        } else if ends[block] && !is_source(diagram, block) {
+            // What nobody reads ends before the outputs.
+            let before = EdgeLabel { minlen: 2, ..held(SLACK) };
             graph.set_edge_named(id(block), "last", None::<String>, Some(before));
         }
     }
-    let apart = EdgeLabel { minlen: 3, ..held(0.0) };
-    graph.set_edge_named("first", "last", None::<String>, Some(apart));
+    if !is_joined(diagram) {
+        let apart = EdgeLabel { minlen: 3, ..held(SLACK) };
+        graph.set_edge_named("first", "last", None::<String>, Some(apart));
+    }
     for (i, wire) in diagram.wires.iter().enumerate() {
         let (from, to) = (id(wire.from.block), id(wire.to.block));
         graph.set_edge_named(from, to, Some(i.to_string()), Some(held(1.0)));
     }
     graph
+}
+
+/// Whether a wire leads from what begins to what ends: then these stand apart by themselves.
+fn is_joined(diagram: &Diagram) -> bool {
+    let mut reached: Vec<bool> = (0..diagram.blocks.len()).map(|block| is_source(diagram, block)).collect();
+    let mut next: Vec<usize> = (0..reached.len()).filter(|block| reached[*block]).collect();
+    while let Some(from) = next.pop() {
+        for wire in diagram.wires.iter().filter(|wire| wire.from.block == from) {
+            if !reached[wire.to.block] {
+                reached[wire.to.block] = true;
+                next.push(wire.to.block);
+            }
+        }
+    }
+    diagram.blocks.iter().zip(reached).any(|(block, reached)| reached && block.kind == Kind::Output)
 }
 
 fn middle(graph: &Layered, id: &str) -> (f64, f64) {
@@ -143,18 +170,26 @@ fn middle(graph: &Layered, id: &str) -> (f64, f64) {
 }
 
 /// The blocks that stand above one another.
-struct Layer {
+pub struct Layer {
+    /// As it was laid out.
     middle: f64,
-    left: f64,
-    right: f64,
+    pub left: f64,
+    pub right: f64,
 }
 
-/// From left to right.
+impl Layer {
+    /// Whether something stands in it.
+    pub fn holds(&self, middle: f64) -> bool {
+        (self.middle - middle).abs() < 1.0
+    }
+}
+
+/// From left to right, moved apart where many wires run far up or down between two.
 fn layers(diagram: &Diagram, shapes: &[Shape], graph: &Layered) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
-    for (block, shape) in shapes.iter().enumerate().take(diagram.blocks.len()) {
+    for (block, shape) in shapes.iter().enumerate() {
         let (x, half) = (middle(graph, &id(block)).0, (shape.width + shape.margin) / 2.0);
-        match layers.iter_mut().find(|layer| (layer.middle - x).abs() < 1.0) {
+        match layers.iter_mut().find(|layer| layer.holds(x)) {
             Some(layer) => {
                 layer.left = layer.left.min(x - half);
                 layer.right = layer.right.max(x + half);
@@ -163,88 +198,43 @@ fn layers(diagram: &Diagram, shapes: &[Shape], graph: &Layered) -> Vec<Layer> {
         }
     }
     layers.sort_by(|a, b| a.middle.total_cmp(&b.middle));
+    let mut moved = 0.0;
+    let mut before: Option<f64> = None;
+    let steep = steep(diagram, graph, &layers);
+    for (layer, steep) in layers.iter_mut().zip(steep) {
+        if let Some(right) = before {
+            moved += right + MOST_APART.min(LAYERS + PER_WIRE * steep as f64) - (layer.left + moved);
+        }
+        layer.left += moved;
+        layer.right += moved;
+        before = Some(layer.right);
+    }
     layers
 }
 
-/// Puts ports whose order says nothing in an order in which few wires cross: the outputs of a
-/// resource by where their wires go first, the inputs of a formula by where theirs come from.
-fn sort_ports(diagram: &Diagram, graph: &Layered, places: &mut [Place]) {
-    let mut leaving: Vec<Vec<(f64, usize)>> = vec![Vec::new(); places.len()];
+/// For each layer how many wires run steeply to it from the one before.
+fn steep(diagram: &Diagram, graph: &Layered, layers: &[Layer]) -> Vec<usize> {
+    let mut steep = vec![0; layers.len()];
     for (i, wire) in diagram.wires.iter().enumerate() {
-        let first = bends(graph, wire, i).get(1).copied();
-        let y = first.map_or_else(|| input(places, wire.to).1, |bend| bend.1);
-        leaving[wire.from.block].push((y, wire.from.port));
-    }
-    for (block, shown) in diagram.blocks.iter().enumerate() {
-        if shown.kind == Kind::Resource {
-            reorder(&mut places[block].shape.outputs, &mut leaving[block]);
+        let ends = [wire.from.block, wire.to.block].map(|block| middle(graph, &id(block)));
+        let bends = bends(graph, wire, i);
+        let inner = bends.get(1..bends.len().saturating_sub(1)).unwrap_or_default();
+        let mut before = ends[0].1;
+        for point in inner.iter().chain([&ends[1]]) {
+            if let Some(layer) = layers.iter().position(|layer| layer.holds(point.0)) {
+                steep[layer] += usize::from((point.1 - before).abs() > STEEP);
+                before = point.1;
+            }
         }
     }
-    let mut coming: Vec<Vec<(f64, usize)>> = vec![Vec::new(); places.len()];
-    for (i, wire) in diagram.wires.iter().enumerate() {
-        let last = bends(graph, wire, i).iter().rev().nth(1).copied();
-        let y = last.map_or_else(|| output(places, wire.from).1, |bend| bend.1);
-        coming[wire.to.block].push((y, wire.to.port));
-    }
-    for (block, shown) in diagram.blocks.iter().enumerate() {
-        if shown.kind == Kind::Formula {
-            reorder(&mut places[block].shape.inputs, &mut coming[block]);
-        }
-    }
-}
-
-/// Gives the ports the same heights in another order: the one whose first wire is highest comes
-/// first.
-fn reorder(heights: &mut [f64], wires: &mut [(f64, usize)]) {
-    wires.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut order: Vec<usize> = Vec::new();
-    for port in wires.iter().map(|(_, port)| *port).chain(0..heights.len()) {
-        if !order.contains(&port) {
-            order.push(port);
-        }
-    }
-    let before = heights.to_vec();
-    for (port, height) in order.into_iter().zip(before) {
-        if let Some(slot) = heights.get_mut(port) {
-            *slot = height;
-        }
-    }
-}
-
-/// Where an output lies.
-fn output(places: &[Place], end: End) -> (f64, f64) {
-    let place = &places[end.block];
-    let y = place.shape.outputs.get(end.port).copied().unwrap_or(LINE);
-    (place.x + place.shape.width, place.y + y)
-}
-
-fn input(places: &[Place], end: End) -> (f64, f64) {
-    let place = &places[end.block];
-    (place.x, place.y + place.shape.inputs.get(end.port).copied().unwrap_or(LINE))
+    steep
 }
 
 /// Where the layout lets a wire pass the layers between its blocks.
-fn bends(graph: &Layered, wire: &Wire, index: usize) -> Vec<(f64, f64)> {
+pub fn bends(graph: &Layered, wire: &Wire, index: usize) -> Vec<(f64, f64)> {
     let name = index.to_string();
     let edge = graph.edge(&id(wire.from.block), &id(wire.to.block), Some(name.as_str()));
     edge.map_or(Vec::new(), |edge| edge.points.iter().map(|point| (point.x, point.y)).collect())
-}
-
-/// A wire from port to port: level under its name, level through each layer that it passes.
-fn led(wire: &Wire, places: &[Place], layers: &[Layer], bends: &[(f64, f64)]) -> Vec<Stretch> {
-    let (start, end) = (output(places, wire.from), input(places, wire.to));
-    let margin = places[wire.from.block].shape.margin;
-    let beside = layers.iter().find(|layer| layer.left <= start.0 && start.0 <= layer.right + 0.5);
-    let out = beside.map_or(start.0 + margin, |layer| layer.right).max(start.0 + 6.0);
-    let mut stretches = vec![Stretch { from: start.0, to: out, y: start.1 }];
-    for layer in layers.iter().filter(|layer| layer.left > start.0 && layer.right < end.0) {
-        let within = |bend: &&(f64, f64)| (bend.0 - layer.middle).abs() < 1.0;
-        if let Some(bend) = bends.iter().find(within) {
-            stretches.push(Stretch { from: layer.left, to: layer.right, y: bend.1 });
-        }
-    }
-    stretches.push(Stretch { from: end.0 - 8.0, to: end.0, y: end.1 });
-    stretches
 }
 
 /// Moved to the margins.
@@ -266,7 +256,10 @@ fn fitted(mut sheet: Sheet) -> Sheet {
         place.y -= top;
     }
     for stretch in sheet.wires.iter_mut().flatten() {
-        *stretch = Stretch { from: stretch.from - left, to: stretch.to - left, y: stretch.y - top };
+        stretch.from -= left;
+        stretch.to -= left;
+        stretch.turn -= left;
+        stretch.y -= top;
     }
     Sheet { width: right - left, height: bottom - top, ..sheet }
 }

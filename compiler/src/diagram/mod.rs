@@ -17,6 +17,7 @@ mod dot;
 mod formula;
 mod global;
 mod layout;
+mod route;
 mod scope;
 mod shape;
 mod svg;
@@ -128,8 +129,8 @@ struct Wire {
 pub enum DrawError {
     /// It has more than [`MAX_BLOCKS`] blocks; holds how many.
     TooLarge(usize),
-    /// Its wires take more work than a picture is worth.
-    TooEntangled,
+    /// Its wires are too many, or too long; holds how many.
+    TooEntangled(usize),
 }
 
 impl std::fmt::Display for DrawError {
@@ -138,7 +139,9 @@ impl std::fmt::Display for DrawError {
             DrawError::TooLarge(blocks) => {
                 write!(f, "it has {blocks} blocks, and a picture shows {MAX_BLOCKS} at most")
             }
-            DrawError::TooEntangled => f.write_str("it has too many long wires for a picture"),
+            DrawError::TooEntangled(wires) => {
+                write!(f, "its {wires} wires are too many for a picture, or too long")
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The picture as SVG: plain shapes and text, one style sheet, no script.
 
-use super::layout::{MARGIN, Place, Sheet, Stretch};
+use super::layout::{MARGIN, Place, Sheet};
+use super::route::Stretch;
 use super::shape::{FONT, HEADER, LETTER, LINE, PAD, Style, label};
 use super::text::width;
 use super::{Block, Diagram, Kind, Rate};
@@ -86,13 +87,14 @@ fn path(stretches: &[Stretch]) -> String {
             }
             Some(before) => {
                 // A wire that runs back, as in a ring, takes a wide turn.
-                let bend = ((stretch.from - before.to) / 2.0).abs().max(18.0);
+                let back = (before.to - stretch.from).max(0.0) * 0.5;
+                let (leave, come) = (before.turn + back * 2.0, before.turn - back * 2.0);
                 let _ = write!(
                     path,
                     "C{} {} {} {} {} {}",
-                    number(before.to + bend),
+                    number(leave),
                     number(before.y),
-                    number(stretch.from - bend),
+                    number(come),
                     number(stretch.y),
                     number(stretch.from),
                     number(stretch.y),

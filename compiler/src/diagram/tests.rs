@@ -237,6 +237,33 @@ fn large_diagrams_are_bounded_and_written_for_graphviz() {
     assert_eq!(of(MAX_BLOCKS - 2).to_svg(), Err(DrawError::TooLarge(MAX_BLOCKS + 1)));
 }
 
+/// Programs that nobody would draw: wires from anywhere to anywhere, blocks that nobody reads.
+#[test]
+fn tangles_are_laid_out_or_refused() {
+    let mut state = 7_u64;
+    let mut below = |limit: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % limit
+    };
+    for (blocks, arguments) in [(2, 9), (30, 3), (90, 0), (90, 1), (90, 9), (150, 4), (200, 8)] {
+        let mut lets = String::from("let w0 = nobody(uv)\n");
+        for i in 1..blocks {
+            let read: Vec<String> = (0..arguments).map(|_| format!("w{}", below(i))).collect();
+            lets += &format!("let w{i} = nobody({})\n", read.join(", "));
+        }
+        let diagram = texture(&format!("{lets} color = w{}", below(blocks)));
+        match place(&diagram) {
+            Ok(sheet) => check_sheet(&format!("{blocks} blocks"), &diagram, &sheet),
+            Err(error) => assert_eq!(error, DrawError::TooEntangled(diagram.wires.len()), "{blocks} blocks"),
+        }
+    }
+    let many = (0..800).map(|i| format!("let w{i} = nobody(uv, time)\n")).take(300).collect::<String>();
+    let sum: Vec<String> =
+        (0..300).flat_map(|i| [format!("w{i}"), format!("w{i}"), format!("w{i}"), format!("w{i}")]).collect();
+    let wide = texture(&format!("{many} color = other({})", sum.join(", ")));
+    assert_eq!(wide.to_svg(), Err(DrawError::TooEntangled(1801)));
+}
+
 #[test]
 fn nesting_and_long_chains_fit_the_stack() {
     let nested = format!("color = {}uv.x{}", "hue(".repeat(120), ")".repeat(120));
@@ -260,7 +287,8 @@ fn pictures_hold_no_markup_of_the_author() {
     }
 }
 
-/// Every program of the repository that parses, with the textures and nodes it declares.
+/// Every program of the repository: its path and its text.
+#[allow(clippy::disallowed_methods, reason = "tests read what the compiler must not")]
 fn programs() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut folders: Vec<_> =
@@ -334,6 +362,9 @@ fn check_sheet(file: &str, diagram: &Diagram, sheet: &Sheet) {
     }
     for (wire, stretches) in diagram.wires.iter().zip(&sheet.wires) {
         let [from, to] = [boxes[wire.from.block], boxes[wire.to.block]];
+        if wire.from.block == wire.to.block {
+            continue;
+        }
         // A wrong file may hold a ring.
         let may_run_back = file.contains("tests/errors");
         assert!(may_run_back || from[2] < to[0], "{file}: a wire runs back in {}", diagram.title);
