@@ -2,7 +2,7 @@
 
 use super::interner::Interner;
 use super::{Constant, Function, FunctionId, Level, Operation, Place, Scalar, Slot, Type, Value, View};
-use crate::intrinsic::{Intrinsic, TO_FLOAT, TO_INT};
+use crate::intrinsic::{Form, Intrinsic, TO_FLOAT, TO_INT};
 use crate::pass::fold_constants::{Folded, fold};
 
 /// A function in the making.
@@ -10,6 +10,8 @@ use crate::pass::fold_constants::{Folded, fold};
 pub struct Builder {
     function: Function,
     known: Interner,
+    /// Total operations become what a shader has.
+    expands: bool,
     place: Place,
 }
 
@@ -26,6 +28,12 @@ impl Builder {
         builder.function.types.reserve(values);
         builder.function.places.reserve(values);
         builder
+    }
+
+    /// From now on, what has a rule for it is made of the operations that a shader has, with guards
+    /// where operands are not known to be fine.
+    pub fn set_expands(&mut self, expands: bool) {
+        self.expands = expands;
     }
 
     /// What has been made so far.
@@ -88,6 +96,12 @@ impl Builder {
             Some(Folded::Value(value)) => return value,
             Some(Folded::Operation(simpler)) => return self.push(simpler, ty),
             None => {}
+        }
+        if let Operation::Builtin(intrinsic, arguments) = &operation
+            && let Form::Expand(rule) = intrinsic.row().form
+            && self.expands
+        {
+            return rule(self, arguments);
         }
         let value = Value(self.function.values.len() as u32);
         self.function.values.push(operation);

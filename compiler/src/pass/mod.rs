@@ -2,7 +2,6 @@
 //! or folder each. They follow arena order, take time in proportion to the graph and never recurse.
 
 pub mod differentiate;
-pub mod expand;
 pub mod fold_constants;
 pub mod hoist;
 pub mod inline;
@@ -17,10 +16,8 @@ use crate::graph::Graph;
 pub fn run(graph: Graph) -> Graph {
     // First, so that all others see whole expressions, and no loop where there need not be one.
     let graph = inline::run(graph);
-    // While intrinsics are whole: their rows say how they change, the guards of a division do not.
-    let graph = differentiate::run(graph);
     // Before hoisting, so that a guard may go where its operands are the same for a whole draw.
-    let graph = expand::run(graph);
+    let graph = differentiate::run(graph);
     let graph = hoist::run(graph);
     // Last: all of them leave things behind that nobody reads.
     remove_dead::run(graph)

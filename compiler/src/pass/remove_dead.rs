@@ -3,7 +3,7 @@
 
 use super::liveness::Liveness;
 use super::taken::Taken;
-use crate::graph::{Builder, Function, FunctionId, Graph, Operation, Value};
+use crate::graph::{Function, FunctionId, Graph, Operation, Value};
 use rustc_hash::FxHashMap;
 
 /// Keeps what the entry's outputs need. The entry keeps its inputs: they are the contract.
@@ -54,36 +54,39 @@ struct Removing {
 }
 
 impl Removing {
+    /// What is left is in order and nothing in it folds, so it is moved as it is.
     fn function(&mut self, place: usize, function: Function) -> Function {
         let taken = Taken::new(function);
-        let mut builder = Builder::with_capacity(taken.name, taken.values.len());
+        let mut new = Function { name: taken.name, ..Function::default() };
         let mut inputs = Vec::with_capacity(taken.inputs.len());
         for (slot, live) in taken.inputs.into_iter().zip(&self.live.inputs[place]) {
-            inputs.push(if *live { builder.input(slot.name, slot.ty) } else { Value(0) });
+            inputs.push(new.inputs.len() as u32);
+            new.inputs.extend(live.then_some(slot));
         }
         self.values.clear();
         self.inner.clear();
         for part in taken.values {
-            let value = match part.operation {
-                _ if !self.live.is_live(place, part.old) => Value(0),
-                Operation::Input(i) => inputs.get(i as usize).copied().unwrap_or(Value(0)),
-                operation => {
-                    builder.set_place(part.place);
-                    let value = builder.push(self.adapted(part.old, operation), part.ty);
-                    if let Some(name) = part.name {
-                        builder.name(value, name);
-                    }
-                    value
-                }
+            self.values.push(Value(new.values.len() as u32));
+            if !self.live.is_live(place, part.old) {
+                continue;
+            }
+            if let Some(name) = part.name {
+                new.names.insert(Value(new.values.len() as u32), name);
+            }
+            let operation = match part.operation {
+                Operation::Input(i) => Operation::Input(inputs.get(i as usize).copied().unwrap_or(0)),
+                operation => self.adapted(part.old, operation),
             };
-            self.values.push(value);
+            new.values.push(operation);
+            new.types.push(part.ty);
+            new.places.push(part.place);
         }
         for ((slot, value), live) in taken.outputs.into_iter().zip(&self.live.outputs[place]) {
             if *live {
-                builder.output(slot.name, self.values[value.0 as usize]);
+                new.outputs.push((slot, self.values[value.0 as usize]));
             }
         }
-        builder.finish()
+        new
     }
 
     fn id(&self, old: FunctionId) -> FunctionId {

@@ -45,6 +45,8 @@ impl<'a> Making<'a> {
         made: &'a [Vec<Made>],
     ) -> Making<'a> {
         let function = &analysis.graph.functions[place];
+        let mut builder = Builder::with_capacity(function.name.clone(), function.values.len());
+        builder.set_expands(true);
         Making {
             analysis,
             place,
@@ -53,7 +55,7 @@ impl<'a> Making<'a> {
             demand,
             requests,
             made,
-            builder: Builder::with_capacity(function.name.clone(), function.values.len()),
+            builder,
             inputs: Vec::new(),
             input_tangents: Vec::new(),
             values: Vec::with_capacity(function.values.len()),
@@ -64,6 +66,7 @@ impl<'a> Making<'a> {
     /// The function, and for each output the places of its tangents.
     pub fn run(mut self) -> (Function, Vec<Option<[u32; 2]>>) {
         self.take_inputs();
+        let mut names = self.function.names.iter().peekable();
         for (old, operation) in self.function.iter() {
             self.builder.set_place(self.function.places[old.0 as usize]);
             let value = self.copy(old, operation);
@@ -71,7 +74,7 @@ impl<'a> Making<'a> {
             let wanted = marked(&self.demand.values, old);
             let tangents = if wanted { self.differentiate(old, operation) } else { None };
             self.tangents.push(tangents);
-            if let Some(name) = self.function.names.get(&old) {
+            if let Some((_, name)) = names.next_if(|(named, _)| **named == old) {
                 self.builder.name(value, name);
                 for (tangent, (_, axis)) in tangents.into_iter().flatten().zip(AXES) {
                     self.builder.name(tangent, format!("{name}_{axis}"));

@@ -10,6 +10,9 @@
 //! steps back one looks, so it is a fixpoint over the body. The condition has no derivative, but
 //! takes what its fold carries.
 //!
+//! Rules say how whole intrinsics change, the guards of a division do not; so total operations
+//! become what a shader has here, as values and tangents are made, and not earlier.
+//!
 //! Analyses first, along arena order, so nothing recurses: `depend` finds what each value changes
 //! with, callees first, and `demand` which values need a tangent and so which variants are
 //! requested, callers first. Then `make` makes them, callees first.
@@ -111,7 +114,8 @@ impl Analysis<'_> {
     }
 }
 
-/// Replaces every `Level::Auto` by gradients and every inner derivative by its value.
+/// Replaces every `Level::Auto` by gradients, every inner derivative by its value, and every total
+/// operation by what a shader has.
 pub fn run(graph: Graph) -> Graph {
     let layouts = Layout::all(&graph);
     let known = depend::analyse(&graph, &layouts);

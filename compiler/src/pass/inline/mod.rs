@@ -11,6 +11,8 @@ mod plan;
 use crate::graph::{Builder, Constant, Fold, Function, FunctionId, Graph, Operation, Value};
 use plan::{Fate, Plan};
 use rustc_hash::FxHashMap;
+use std::collections::btree_map;
+use std::iter::Peekable;
 
 /// Steps that are written out at most.
 const MOST_STEPS: u32 = 4;
@@ -65,6 +67,8 @@ struct Copying<'a> {
     function: &'a Function,
     arguments: Vec<Value>,
     next: usize,
+    /// The names of the operations to come.
+    names: Peekable<btree_map::Iter<'a, Value, String>>,
     values: Vec<Value>,
     /// The outputs of calls and folds that were taken over, by the call or fold.
     outputs: FxHashMap<Value, Vec<Value>>,
@@ -89,6 +93,7 @@ impl<'a> Copying<'a> {
             function,
             arguments,
             next: 0,
+            names: function.names.iter().peekable(),
             values: Vec::with_capacity(function.values.len()),
             outputs: FxHashMap::default(),
             steps: None,
@@ -99,6 +104,13 @@ impl<'a> Copying<'a> {
 
     fn value(&self, old: Value) -> Value {
         self.values.get(old.0 as usize).copied().unwrap_or(Value(0))
+    }
+
+    /// The name that a value keeps; values are asked for in order.
+    fn name(&mut self, old: Value) -> Option<&'a str> {
+        while self.names.next_if(|(named, _)| **named < old).is_some() {}
+        let (_, name) = self.names.next_if(|(named, _)| **named == old)?;
+        self.named.then_some(name.as_str())
     }
 
     /// The value being copied stands for what its outputs will be; only they are read.
@@ -181,7 +193,7 @@ impl<'a> Expanding<'a, '_> {
             _ => self.builder.push(operation.map_operands(|v| top.value(v)), top.function.ty(old)),
         };
         top.values.push(value);
-        if let Some(name) = top.function.names.get(&old).filter(|_| top.named) {
+        if let Some(name) = top.name(old) {
             self.builder.name(value, name);
         }
         None
