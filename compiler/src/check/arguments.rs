@@ -7,7 +7,7 @@ use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, names, nodes, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
 use crate::resource::KINDS;
-use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name};
+use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name, TypeKind};
 
 /// An argument, evaluated.
 #[derive(Clone)]
@@ -97,7 +97,15 @@ impl<'a> Checker<'a> {
             _ => true,
         };
         let given: Vec<usize> = (0..slots.len()).filter(|i| slots[*i].is_some()).collect();
-        let pairs = given.iter().flat_map(|a| given.iter().map(move |b| (*a, *b)));
+        // A name says where an argument goes, and words and lambdas show what they are for.
+        let moves = |slot: &&usize| {
+            slots[**slot].as_ref().is_some_and(|given| {
+                let known = matches!(given.wire, Wire::Value(_) | Wire::Resource(_) | Wire::Matrix(_));
+                known && given.name.is_none() && !matches!(head.inputs[**slot].ty.kind, TypeKind::Node { .. })
+            })
+        };
+        let movable: Vec<usize> = given.iter().filter(moves).copied().collect();
+        let pairs = movable.iter().flat_map(|a| movable.iter().map(move |b| (*a, *b)));
         let mends = |(a, b): &(usize, usize)| {
             let from = |slot: usize| {
                 if slot == *a {
