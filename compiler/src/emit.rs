@@ -20,9 +20,26 @@ pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let text =
         wgsl::write_string(&lowered.module, &info, wgsl::WriterFlags::empty()).map_err(|e| describe(&e))?;
     // The writer breaks the line behind attributes.
-    let text = text.replace(") \nvar", ") var").replace("@fragment \n", "@fragment\n");
-    let text = text.replace(GREATEST_SHORT, GREATEST);
+    let text = replaced(text, ") \nvar", ") var");
+    let text = replaced(text, "@fragment \n", "@fragment\n");
+    let text = replaced(text, GREATEST_SHORT, GREATEST);
     Ok(lowered.names.apply(&text, &lowered.results))
+}
+
+/// A long text with every `from` replaced: mostly there is none, or one.
+fn replaced(text: String, from: &str, to: &str) -> String {
+    let mut found = memchr::memmem::find_iter(text.as_bytes(), from).peekable();
+    if found.peek().is_none() {
+        return text;
+    }
+    let mut out = String::with_capacity(text.len());
+    let mut done = 0;
+    for start in found {
+        out += &text[done..start];
+        out += to;
+        done = start + from.len();
+    }
+    out + &text[done..]
 }
 
 /// An error with its causes.

@@ -9,11 +9,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
 /// `_` (tools that import WGSL refuse it otherwise), no leading `_`.
 pub fn identifier(name: &str) -> String {
-    let mut out: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    while out.contains("__") {
-        out = out.replace("__", "_");
+    let mut out = String::with_capacity(name.len() + 2);
+    for c in name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }) {
+        // Neither a leading `_` nor two of them side by side.
+        if c != '_' || !(out.is_empty() || out.ends_with('_')) {
+            out.push(c);
+        }
     }
-    let mut out = out.trim_start_matches('_').to_owned();
     if out.is_empty() || out.starts_with(|c: char| c.is_ascii_digit()) {
         out.insert(0, 'n');
     }
@@ -48,9 +50,8 @@ fn suffix(mut n: usize) -> String {
 /// The names of one scope: a module, a function, a struct.
 #[derive(Default, Clone)]
 pub struct Scope {
-    taken: FxHashSet<String>,
-    /// How many suffixes of a name have been tried.
-    tried: FxHashMap<String, usize>,
+    /// The names taken, each with how many suffixes of it have been tried.
+    taken: FxHashMap<String, usize>,
     /// Names beginning with this belong to the module.
     module: String,
 }
@@ -63,7 +64,7 @@ impl Scope {
 
     /// Takes a name that was chosen elsewhere.
     pub fn take(&mut self, name: &str) {
-        self.taken.insert(name.to_owned());
+        self.taken.entry(name.to_owned()).or_insert(0);
     }
 
     /// The wished name, or one like it that is free here.
@@ -74,14 +75,20 @@ impl Scope {
         if module || is_reserved(&base) {
             base = format!("{base}_value");
         }
-        let tried = self.tried.entry(base.clone()).or_default();
-        loop {
-            let name = if *tried == 0 { base.clone() } else { format!("{base}_{}", suffix(*tried)) };
-            *tried += 1;
-            if self.taken.insert(name.clone()) {
-                return name;
+        let Some(mut tried) = self.taken.get(&base).copied() else {
+            self.taken.insert(base.clone(), 0);
+            return base;
+        };
+        let name = loop {
+            tried += 1;
+            let name = format!("{base}_{}", suffix(tried));
+            if !self.taken.contains_key(&name) {
+                break name;
             }
-        }
+        };
+        self.taken.insert(base, tried);
+        self.taken.insert(name.clone(), 0);
+        name
     }
 }
 
@@ -146,44 +153,58 @@ impl Names {
             "var" => Kind::Stored,
             _ => return None,
         };
-        let (line, behind) = after.split_once('\n')?;
-        let declared = line.trim_start().split([' ', ':']).next()?;
-        self.get(declared).is_some_and(|name| name.kind == elsewhere).then_some(behind)
+        let declared = after.trim_start().split([' ', ':']).next()?;
+        self.get(declared).filter(|name| name.kind == elsewhere)?;
+        after.split_once('\n').map(|(_, behind)| behind)
     }
 
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
     /// nth function, which the writer names itself.
     pub fn apply(&self, text: &str, results: &[rustc_hash::FxHashMap<u32, String>]) -> String {
-        let mut out = String::with_capacity(text.len());
-        let mut rest = text;
+        let mut out = String::with_capacity(text.len() * 3 / 2);
         let mut function = 0;
         let mut stored = FxHashSet::default();
-        while let Some(start) = rest.find(|c: char| c.is_ascii_alphabetic() || c == '_') {
-            let (before, from) = rest.split_at(start);
-            out.push_str(before);
-            let end = from.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(from.len());
-            let (token, after) = from.split_at(end);
-            function += usize::from(token == "fn");
-            if let Some(behind) = self.behind_declaration(token, after) {
+        // What stands before `done` is in `out`.
+        let mut done = 0;
+        let mut at = 0;
+        while let Some(token) = next_word(text, at) {
+            at = token.end;
+            let (start, word) = (token.start, &text[token]);
+            function += usize::from(word == "fn");
+            if let Some(behind) = self.behind_declaration(word, &text[at..]) {
+                out.push_str(&text[done..start]);
                 out.truncate(out.trim_end_matches(' ').len());
                 // The writer parts variables from the rest by an empty line.
-                rest = if out.ends_with("{\n") { behind.trim_start_matches('\n') } else { behind };
+                let behind = if out.ends_with("{\n") { behind.trim_start_matches('\n') } else { behind };
+                at = text.len() - behind.len();
+                done = at;
                 continue;
             }
-            let result = token.strip_prefix("_e").and_then(|n| n.parse::<u32>().ok());
-            let result =
-                result.and_then(|n| results.get(function.wrapping_sub(1))?.get(&n)).map(String::as_str);
-            let name = self.get(token);
-            if name.is_some_and(|name| name.kind == Kind::Stored) && stored.insert(token) {
+            let result = || {
+                let number = word.strip_prefix("_e")?.parse::<u32>().ok()?;
+                results.get(function.wrapping_sub(1))?.get(&number).map(String::as_str)
+            };
+            let name = self.get(word);
+            let Some(text_of) = name.map(|name| name.text.as_str()).or_else(result) else { continue };
+            out.push_str(&text[done..start]);
+            if name.is_some_and(|name| name.kind == Kind::Stored) && stored.insert(word) {
                 out.push_str("var ");
             }
-            out.push_str(name.map(|name| name.text.as_str()).or(result).unwrap_or(token));
-            // A number's suffix or exponent is no name: skip what directly follows a digit.
-            rest = after;
+            out.push_str(text_of);
+            done = at;
         }
-        out.push_str(rest);
+        out.push_str(&text[done..]);
         out
     }
+}
+
+/// The next run of letters, digits and `_` that begins with no digit.
+fn next_word(text: &str, from: usize) -> Option<std::ops::Range<usize>> {
+    let bytes = text.as_bytes().get(from..)?;
+    let start = bytes.iter().position(|b| b.is_ascii_alphabetic() || *b == b'_')?;
+    let length = bytes[start..].iter().position(|b| !b.is_ascii_alphanumeric() && *b != b'_');
+    let end = length.map_or(bytes.len(), |length| start + length);
+    Some(from + start..from + end)
 }
 
 #[cfg(test)]
