@@ -50,9 +50,9 @@ pub struct Head<'s> {
 const MOST_EXCHANGED: usize = 8;
 
 /// A call with everything bound.
-pub struct Bound {
+pub struct Bound<'a> {
     /// The dimension variables.
-    pub dims: Dims,
+    pub dims: Dims<'a>,
     /// One wire for each input, of its declared type.
     pub wires: Vec<Wire>,
     /// Where each argument stands; the call's own place for defaults.
@@ -68,13 +68,14 @@ impl<'a> Checker<'a> {
         dim: Option<&Dim>,
         given: Vec<Given<'a>>,
         place: Place,
-    ) -> Option<Bound> {
+    ) -> Option<Bound<'a>> {
         let slots = self.place_arguments(f, head, given, place)?;
         if slots.iter().flatten().any(|given| matches!(given.wire, Wire::Unknown)) {
             return None;
         }
         let dims = self.bind_dims(f, head, dim, &slots, place)?;
-        let mut bound = Bound { dims, wires: Vec::new(), places: Vec::new() };
+        let count = head.inputs.len();
+        let mut bound = Bound { dims, wires: Vec::with_capacity(count), places: Vec::with_capacity(count) };
         let mut complete = true;
         let said = self.diagnostics.len();
         for (input, slot) in head.inputs.iter().zip(&slots) {
@@ -187,7 +188,7 @@ impl<'a> Checker<'a> {
         dim: Option<&Dim>,
         slots: &[Option<Given<'a>>],
         place: Place,
-    ) -> Option<Dims> {
+    ) -> Option<Dims<'a>> {
         let mut dims = Dims::new();
         if dim.is_some() && head.dims.is_empty() {
             self.report(f, errors::no_dimension(place, head.name));
@@ -223,7 +224,7 @@ impl<'a> Checker<'a> {
                     (width, from) = (found, given.place);
                 }
             }
-            dims.push((variable.text.clone(), width));
+            dims.push((&variable.text, width));
         }
         Some(dims)
     }
@@ -235,7 +236,7 @@ impl<'a> Checker<'a> {
         head: Head<'a>,
         input: &'a Input,
         slot: Option<Given<'a>>,
-        bound: &Bound,
+        bound: &Bound<'a>,
         place: Place,
     ) -> Wire {
         let declared = match types::resolve(&input.ty, &bound.dims, self.modules[head.module].file) {
@@ -258,10 +259,14 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         head: Head<'a>,
         default: &'a Expr,
-        bound: &Bound,
+        bound: &Bound<'a>,
         (input, declared): (&str, &Declared),
         place: Place,
     ) -> Wire {
+        if let ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Bool(_) = default.kind {
+            let wire = self.expr(f, default);
+            return self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
+        }
         let earlier = head.inputs.iter().zip(&bound.wires);
         let scope = earlier.map(|(input, wire)| (input.name.text.as_str(), wire.clone())).collect();
         let module = std::mem::replace(&mut f.module, head.module);

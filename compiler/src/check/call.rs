@@ -9,8 +9,12 @@ use crate::diagnostic::{Place, arguments as sentences, names, nodes};
 use crate::graph::{Constant, FunctionId, Operation, Value};
 use crate::library::Callable;
 use crate::resource::KINDS;
+use smallvec::SmallVec;
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Argument, Call, Dim, Expr, ExprKind, Input, Postfix, Span, TypeKind};
+use texgraph_grammar::syntax::{Argument, Call, Dim, Expr, ExprKind, Field, Input, Postfix, Span, TypeKind};
+
+/// What a name before a bracket may mean: few in most cases.
+pub type Candidates = SmallVec<[Callable; 4]>;
 
 /// What is called, as written.
 #[derive(Clone, Copy)]
@@ -118,7 +122,7 @@ impl<'a> Checker<'a> {
     ) -> Wire {
         let place = self.place(f, span);
         let given = self.given(f, &call.arguments);
-        let candidates = self.own_callables(module, &call.name.text);
+        let candidates = Candidates::from_slice(self.own_callables(module, &call.name.text));
         if candidates.is_empty() {
             let at = self.place(f, call.name.span);
             if self.globals[module].contains_key(&call.name.text) {
@@ -157,30 +161,30 @@ impl<'a> Checker<'a> {
             let callables = self.own_callables(module, &name.text);
             if let (ExprKind::Name(alias), false) = (&base.kind, callables.is_empty()) {
                 let name = format!("{alias}.{}", name.text);
-                return Wire::Callables(Rc::new(ImportedNodes { name, callables }));
+                return Wire::Callables(Rc::new(ImportedNodes { name, callables: callables.to_vec() }));
             }
         }
         self.expr(f, expr)
     }
 
     /// What a name may mean in a file, nearest first.
-    pub(super) fn callables_of(&self, module: usize, name: &str) -> Vec<Callable> {
-        let mut found = Vec::new();
+    pub(super) fn callables_of(&self, module: usize, name: &str) -> Candidates {
+        let mut found = Candidates::new();
         if module >= self.library.modules().len() {
-            found.extend(self.own_callables(module, name));
+            found.extend_from_slice(self.own_callables(module, name));
             for import in self.modules[module].imports.iter().filter(|import| import.alias.is_none()) {
-                found.extend(self.own_callables(import.module, name));
+                found.extend_from_slice(self.own_callables(import.module, name));
             }
             if name.starts_with('_') {
                 return found;
             }
         }
-        found.extend(self.library.callables(name));
+        found.extend_from_slice(self.library.callables(name));
         found
     }
 
-    pub(super) fn own_callables(&self, module: usize, name: &str) -> Vec<Callable> {
-        self.callables[module].get(name).cloned().unwrap_or_default()
+    pub(super) fn own_callables(&self, module: usize, name: &str) -> &[Callable] {
+        self.callables[module].get(name).map_or(&[], Vec::as_slice)
     }
 
     pub(super) fn head(&self, callable: Callable) -> Option<Head<'a>> {
@@ -222,7 +226,7 @@ impl<'a> Checker<'a> {
             self.words(f, candidates, &given);
             return Wire::Unknown;
         }
-        let heads: Vec<(Callable, Head<'a>)> =
+        let heads: SmallVec<[(Callable, Head<'a>); 4]> =
             candidates.iter().filter_map(|callable| Some((*callable, self.head(*callable)?))).collect();
         let fits =
             |head: &Head<'a>, n: usize| head.inputs.iter().zip(&given).take(n).all(|(i, g)| accepts(f, i, g));
@@ -321,9 +325,8 @@ impl<'a> Checker<'a> {
         bound: Bound,
         place: Place,
     ) -> Wire {
-        let (arguments, values): (Vec<ArgumentKey>, Vec<Vec<Value>>) =
-            bound.wires.into_iter().map(|wire| key_of(f, wire)).unzip();
-        let values = values.concat();
+        let mut values = Vec::with_capacity(bound.wires.len());
+        let arguments = bound.wires.into_iter().map(|wire| key_of(f, wire, &mut values)).collect();
         let dims = bound.dims.iter().map(|(_, width)| *width).collect();
         let key = Key { module, item, dims, arguments, wire };
         match self.made.get(&key) {
@@ -350,17 +353,17 @@ impl<'a> Checker<'a> {
     fn node_outputs(&self, module: usize, item: usize, results: Vec<Value>) -> Wire {
         let outputs = self.node(module, item).map_or(&[][..], |node| &node.outputs);
         let mut results = results.into_iter();
-        let mut record: Vec<(String, Wire)> = outputs
-            .iter()
-            .map(|output| {
-                let wire = match types::matrix(&output.ty) {
-                    Some(size) => Wire::Matrix(results.by_ref().take(usize::from(size)).collect()),
-                    None => results.next().map_or(Wire::Unknown, Wire::Value),
-                };
-                (output.name.text.clone(), wire)
-            })
-            .collect();
-        if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
+        let mut wire = |output: &Field| match types::matrix(&output.ty) {
+            Some(size) => Wire::Matrix(results.by_ref().take(usize::from(size)).collect()),
+            None => results.next().map_or(Wire::Unknown, Wire::Value),
+        };
+        match outputs {
+            [only] => wire(only),
+            _ => {
+                let record = outputs.iter().map(|output| (output.name.text.clone(), wire(output)));
+                Wire::Record(Rc::new(record.collect()))
+            }
+        }
     }
 
     /// The outputs of a function that gives a wire of a node.
@@ -415,29 +418,28 @@ impl<'a> Checker<'a> {
 const SPECIAL: &[&str] =
     &["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "dx", "dy", "sample", "texel"];
 
-/// What of an argument is part of the function, and the values that it is called with.
-fn key_of(f: &Frame<'_>, wire: Wire) -> (ArgumentKey, Vec<Value>) {
-    let number = |value: Value| match f.builder.as_constant(value) {
-        Some(constant) => (ArgumentKey::Constant(constant), None),
-        None => (ArgumentKey::Value(f.builder.ty(value)), Some(value)),
+/// What of an argument is part of the function; the rest joins the values that it is called with.
+fn key_of(f: &Frame<'_>, wire: Wire, values: &mut Vec<Value>) -> ArgumentKey {
+    let mut number = |value: Value| match f.builder.as_constant(value) {
+        Some(constant) => ArgumentKey::Constant(constant),
+        None => {
+            values.push(value);
+            ArgumentKey::Value(f.builder.ty(value))
+        }
     };
     match wire {
-        Wire::Value(value) => {
-            let (key, value) = number(value);
-            (key, value.into_iter().collect())
-        }
-        Wire::Matrix(columns) => {
-            let (keys, values): (Vec<ArgumentKey>, Vec<Option<Value>>) =
-                columns.iter().map(|column| number(*column)).unzip();
-            (ArgumentKey::Matrix(keys), values.into_iter().flatten().collect())
-        }
+        Wire::Value(value) => number(value),
+        Wire::Matrix(columns) => ArgumentKey::Matrix(columns.iter().map(|column| number(*column)).collect()),
         Wire::Resource(resource) => {
-            let views = resource.views.iter().map(|(_, view)| *view).collect();
-            (ArgumentKey::Resource(resource.kind, resource.constants.clone()), views)
+            values.extend(resource.views.iter().map(|(_, view)| *view));
+            ArgumentKey::Resource(resource.kind, resource.constants.clone())
         }
-        Wire::Node(node) => (ArgumentKey::Node(node.function), node.captures.clone()),
-        Wire::Word(word, _) => (ArgumentKey::Word(word), Vec::new()),
-        _ => (ArgumentKey::None, Vec::new()),
+        Wire::Node(node) => {
+            values.extend(&node.captures);
+            ArgumentKey::Node(node.function)
+        }
+        Wire::Word(word, _) => ArgumentKey::Word(word),
+        _ => ArgumentKey::None,
     }
 }
 

@@ -79,7 +79,7 @@ impl<'a> Checker<'a> {
             }
             self.resource_wires.push(ResourceFields { kind, views, constants });
             self.resources.push(Resource {
-                name: self.fresh_name(&f.current),
+                name: self.fresh_name(f.current),
                 label: String::new(),
                 place,
                 recipe: made.recipe,

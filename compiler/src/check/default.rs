@@ -15,7 +15,7 @@ impl<'a> Checker<'a> {
         f.module = module;
         f.builder = Builder::new(node.name.text.clone());
         f.node = Some(node);
-        f.dims = node.dims.iter().map(|d| (d.text.clone(), 2)).collect();
+        f.dims = node.dims.iter().map(|d| (d.text.as_str(), 2)).collect();
         for input in &node.inputs {
             if let Some(value) = &input.default {
                 f.steps.push(Step { target: Target::Default(input), value });

@@ -55,7 +55,7 @@ impl<'a> Checker<'a> {
             f.failed = true;
             return Wire::Unknown;
         }
-        if let Some((_, width)) = f.dims.iter().find(|(dim, _)| dim == name) {
+        if let Some((_, width)) = f.dims.iter().find(|(dim, _)| *dim == name) {
             return Wire::Value(f.builder.constant(Constant::ints(&[i32::from(*width)])));
         }
         match self.global(f.module, name) {
@@ -93,11 +93,8 @@ impl<'a> Checker<'a> {
         }
         let near = {
             // What the statement itself binds can't be meant.
-            let own = f
-                .order
-                .get(f.next)
-                .and_then(|step| f.steps.get(*step))
-                .map_or(Vec::new(), super::Step::names);
+            let own = f.order.get(f.next).and_then(|step| f.steps.get(*step));
+            let own: Vec<&str> = own.into_iter().flat_map(super::Step::names).collect();
             let scoped = f.scopes.iter().flat_map(|scope| scope.keys().copied());
             let later = f.steps.iter().flat_map(super::Step::names);
             let items = self.globals[f.module].keys().map(String::as_str);

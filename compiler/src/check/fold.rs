@@ -220,7 +220,7 @@ impl<'a> Checker<'a> {
         let (order, rings) = order::sort(&needs);
         for ring in &rings {
             let names: Vec<&str> =
-                ring.iter().filter_map(|i| order::names_of(&body.statements[*i]).first().copied()).collect();
+                ring.iter().filter_map(|i| order::names_of(&body.statements[*i]).next()).collect();
             let span = ring.first().map_or(body.span, |i| order::value_of(&body.statements[*i]).span);
             let place = self.place(f, span);
             self.report(f, names::cycle(place, &names));

@@ -33,7 +33,7 @@ pub struct Frame<'a> {
     pub(super) key: Option<Key>,
     pub(super) node: Option<&'a Node>,
     pub(super) module: usize,
-    pub(super) dims: Dims,
+    pub(super) dims: Dims<'a>,
     pub(super) builder: Builder,
     pub(super) scopes: Vec<FxHashMap<&'a str, Wire>>,
     /// The functions around the one that the builder makes, the outermost first.
@@ -65,7 +65,7 @@ pub struct Frame<'a> {
     /// The call in a user's file that leads here.
     pub(super) caller: Option<Place>,
     /// The statement whose value is being made; names made-up resources.
-    pub(super) current: String,
+    pub(super) current: &'a str,
 }
 
 impl<'a> Frame<'a> {
@@ -92,7 +92,7 @@ impl<'a> Frame<'a> {
             foreign: 0,
             parent: None,
             caller: None,
-            current: String::new(),
+            current: "",
         }
     }
 
@@ -103,14 +103,13 @@ impl<'a> Frame<'a> {
 }
 
 impl<'a> Step<'a> {
-    pub(super) fn names(&self) -> Vec<&'a str> {
-        match self.target {
-            Target::Let(Pattern::Name(name)) | Target::Output(name) | Target::Global(name, _) => {
-                vec![&name.text]
-            }
-            Target::Let(Pattern::Record(names, _)) => names.iter().map(|n| n.text.as_str()).collect(),
-            Target::Param(_) | Target::Default(_) | Target::Render(_) => vec![self.target.name()],
-        }
+    /// The names that it binds.
+    pub(super) fn names(&self) -> impl Iterator<Item = &'a str> + use<'a> {
+        let (one, several) = match self.target {
+            Target::Let(Pattern::Record(names, _)) => (None, names.as_slice()),
+            target => (Some(target.name()), &[][..]),
+        };
+        one.into_iter().chain(several.iter().map(|name| name.text.as_str()))
     }
 
     pub(super) fn span(&self) -> Span {

@@ -248,7 +248,7 @@ impl<'a> Checker<'a> {
         f.node = Some(node);
         f.module = key.module;
         f.parent = parent;
-        f.dims = node.dims.iter().map(|d| d.text.clone()).zip(key.dims.iter().copied()).collect();
+        f.dims = node.dims.iter().map(|d| d.text.as_str()).zip(key.dims.iter().copied()).collect();
         for (input, argument) in node.inputs.iter().zip(&key.arguments) {
             let wire = self.input_wire(&mut f, input, argument);
             f.scopes[0].insert(&input.name.text, wire);
@@ -264,7 +264,7 @@ impl<'a> Checker<'a> {
         while let Some(step) = f.order.get(f.next) {
             let Step { target, value } = f.steps[*step];
             let (mark, failed, unknown) = (self.diagnostics.len(), f.failed, f.unknown.len());
-            f.current = target.name().to_owned();
+            f.current = target.name();
             let wire = match target {
                 Target::Render(item) => self.render_node(f, item),
                 _ => self.expr(f, value),

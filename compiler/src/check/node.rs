@@ -2,20 +2,19 @@
 //! function of the inputs that its type names and of what it reads from where it was written.
 
 use super::arguments::Given;
-use super::call::Callee;
+use super::call::{Callee, Candidates};
 use super::types::{Declared, NodeType};
 use super::wire::{NodeWire, Wire};
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, nodes};
 use crate::graph::{Builder, Constant, Scalar, Type, Value};
-use crate::library::Callable;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, ExprKind, Name, Postfix};
 
 /// What is to become a node.
 enum Source<'a> {
     Lambda(&'a [Name], &'a Expr),
-    Named(Callee<'a>, Vec<Callable>),
+    Named(Callee<'a>, Candidates),
     Passed(Rc<NodeWire>),
 }
 
@@ -72,7 +71,7 @@ impl<'a> Checker<'a> {
                     _ => None,
                 });
                 let callee = Callee { name: name.unwrap_or_default(), place, dim: None };
-                Some(Source::Named(callee, nodes.callables.clone()))
+                Some(Source::Named(callee, Candidates::from_slice(&nodes.callables)))
             }
             // A name before a bracket is looked up among nodes only, so here it is too.
             (_, Some(ExprKind::Name(name))) if !self.callables_of(f.module, name).is_empty() => {

@@ -24,6 +24,14 @@ impl<'a> Free<'a> {
         free
     }
 
+    /// Of another expression instead.
+    pub fn read(&mut self, expr: &'a Expr) {
+        self.values.clear();
+        self.places.clear();
+        self.calls.clear();
+        self.expr(expr);
+    }
+
     /// Of a node's body: its inputs and wires are not free in it.
     pub fn of_node(node: &'a Node) -> Free<'a> {
         let mut free = Free::default();
@@ -34,7 +42,7 @@ impl<'a> Free<'a> {
     }
 
     fn name(&mut self, name: &'a str, place: Span) {
-        if self.bound.get(name).is_none_or(|count| *count == 0) {
+        if self.bound.is_empty() || self.bound.get(name).is_none_or(|count| *count == 0) {
             self.values.push(name);
             self.places.push(place);
         }
@@ -121,15 +129,14 @@ impl<'a> Free<'a> {
 }
 
 /// The names a statement binds.
-pub fn names_of(statement: &Statement) -> Vec<&str> {
-    match statement {
+pub fn names_of(statement: &Statement) -> impl Iterator<Item = &str> {
+    let names = match statement {
         Statement::Let { pattern: Pattern::Name(name), .. } | Statement::Assign { name, .. } => {
-            vec![&name.text]
+            std::slice::from_ref(name)
         }
-        Statement::Let { pattern: Pattern::Record(names, _), .. } => {
-            names.iter().map(|n| n.text.as_str()).collect()
-        }
-    }
+        Statement::Let { pattern: Pattern::Record(names, _), .. } => names,
+    };
+    names.iter().map(|name| name.text.as_str())
 }
 
 /// The expression of a statement.
@@ -153,9 +160,12 @@ pub fn sort(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
     let mut order = Vec::with_capacity(needs.len());
     let mut rings = Vec::new();
     let mut in_ring = vec![false; needs.len()];
+    let mut stack = Vec::new();
     for root in 0..needs.len() {
-        let mut stack = if state[root] == State::New { vec![(root, 0)] } else { continue };
-        state[root] = State::Open;
+        if state[root] == State::New {
+            stack.push((root, 0));
+            state[root] = State::Open;
+        }
         while let Some((step, next)) = stack.last_mut() {
             let Some(&needed) = needs[*step].get(*next) else {
                 state[*step] = State::Done;

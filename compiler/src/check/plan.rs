@@ -138,17 +138,18 @@ impl<'a> Checker<'a> {
         }
         f.bound = binder.keys().copied().collect();
         let reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
-        let needs: Vec<Vec<usize>> = f
-            .steps
-            .iter()
-            .map(|step| {
-                let free = order::Free::of(step.value);
+        let mut free = order::Free::default();
+        let needs = f.steps.iter().map(|step| {
+            free.read(step.value);
+            let through = reach.as_ref().map(|reach| {
                 // A node may be passed by its bare name.
                 let callees: Vec<&str> = free.calls.iter().chain(&free.values).copied().collect();
-                let through = reach.as_ref().map(|reach| reach.values(&callees)).unwrap_or_default();
-                free.values.iter().chain(&through).filter_map(|name| binder.get(name).copied()).collect()
-            })
-            .collect();
+                reach.values(&callees)
+            });
+            let names = free.values.iter().chain(through.iter().flatten());
+            names.filter_map(|name| binder.get(name).copied()).collect()
+        });
+        let needs: Vec<Vec<usize>> = needs.collect();
         let (order, rings) = order::sort(&needs);
         f.order = order;
         for ring in rings {
@@ -160,9 +161,10 @@ impl<'a> Checker<'a> {
     fn ring(&mut self, f: &mut Frame<'a>, ring: &[usize]) {
         let start = ring.iter().enumerate().min_by_key(|(_, step)| **step).map_or(0, |(i, _)| i);
         let steps: Vec<&Step> = ring[start..].iter().chain(&ring[..start]).map(|i| &f.steps[*i]).collect();
-        let next = steps.get(1).or(steps.first()).map_or(Vec::new(), |step| step.names());
+        let next: Vec<&str> =
+            steps.get(1).or(steps.first()).into_iter().flat_map(|step| step.names()).collect();
         let span = steps.first().map_or(Span::default(), |step| read(step, &next).unwrap_or(step.span()));
-        let names: Vec<&'a str> = steps.iter().filter_map(|step| step.names().first().copied()).collect();
+        let names: Vec<&'a str> = steps.iter().filter_map(|step| step.names().next()).collect();
         if f.node.is_none() {
             // Nodes that read them must not find them missing.
             let all: Vec<&'a str> = steps.iter().flat_map(|step| step.names()).collect();

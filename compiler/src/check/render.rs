@@ -44,7 +44,7 @@ impl<'a> Checker<'a> {
             return Wire::Unknown;
         };
         let place = self.place(f, node.name.span);
-        let dims: types::Dims = node.dims.iter().map(|d| (d.text.clone(), 2)).collect();
+        let dims: types::Dims = node.dims.iter().map(|d| (d.text.as_str(), 2)).collect();
         let mut given = Vec::new();
         for input in node.inputs.iter().filter(|input| input.default.is_none()) {
             let declared = types::resolve(&input.ty, &dims, self.modules[module].file);

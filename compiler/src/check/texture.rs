@@ -182,7 +182,7 @@ impl<'a> Checker<'a> {
     /// The key of a node with every input open, and whether its types are right.
     fn open_key(&mut self, module: usize, item: usize, node: &Node) -> (Key, bool) {
         let file = self.modules[module].file;
-        let dims: types::Dims = node.dims.iter().map(|d| (d.text.clone(), 2)).collect();
+        let dims: types::Dims = node.dims.iter().map(|d| (d.text.as_str(), 2)).collect();
         let before = self.diagnostics.len();
         let argument = |input: &texgraph_grammar::syntax::Input| match types::resolve(&input.ty, &dims, file)
         {

@@ -42,7 +42,7 @@ pub struct NodeType {
 }
 
 /// Dimension variables with their values.
-pub type Dims = Vec<(String, u8)>;
+pub type Dims<'a> = Vec<(&'a str, u8)>;
 
 /// The scalar and fixed width of a named vector type; width `None` for the generic forms.
 fn vector(name: &str) -> Option<(Scalar, Option<u8>)> {
@@ -110,7 +110,7 @@ pub fn kind_of(ty: &syntax::Type) -> Option<usize> {
 }
 
 /// A declared type under a binding of its dimension variables.
-pub fn resolve(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Diagnostic> {
+pub fn resolve(ty: &syntax::Type, dims: &Dims<'_>, file: u32) -> Result<Declared, Diagnostic> {
     let place = Place { file, span: ty.span };
     match &ty.kind {
         TypeKind::Named { name, dim } => match vector(&name.text) {
@@ -132,12 +132,16 @@ pub fn resolve(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Di
 }
 
 /// The fields of a record type, or the inputs of a node type.
-fn fields(fields: &[syntax::Field], dims: &Dims, file: u32) -> Result<Vec<(String, Declared)>, Diagnostic> {
+fn fields(
+    fields: &[syntax::Field],
+    dims: &Dims<'_>,
+    file: u32,
+) -> Result<Vec<(String, Declared)>, Diagnostic> {
     fields.iter().map(|field| Ok((field.name.text.clone(), part(&field.ty, dims, file)?))).collect()
 }
 
 /// What may stand inside a node's type: numbers, matrices, and records of them.
-fn part(ty: &syntax::Type, dims: &Dims, file: u32) -> Result<Declared, Diagnostic> {
+fn part(ty: &syntax::Type, dims: &Dims<'_>, file: u32) -> Result<Declared, Diagnostic> {
     if let TypeKind::Record(parts) = &ty.kind {
         return Ok(Declared::Record(fields(parts, dims, file)?));
     }
@@ -173,7 +177,7 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
 }
 
 /// The width that a generic type's `<n>` stands for.
-pub fn width_of(generic: &str, dim: Option<&Dim>, dims: &Dims, place: Place) -> Result<u8, Diagnostic> {
+pub fn width_of(generic: &str, dim: Option<&Dim>, dims: &Dims<'_>, place: Place) -> Result<u8, Diagnostic> {
     match dim {
         Some(Dim::Number(n, _)) if (1..=4).contains(n) => Ok(*n as u8),
         Some(Dim::Number(n, _)) => Err(types::bad_dimension(place, *n)),

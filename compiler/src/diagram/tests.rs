@@ -1,7 +1,5 @@
 //! Diagrams of small programs, and of all that the repository holds.
 
-#![expect(clippy::disallowed_methods, reason = "the repository's own files are read")]
-
 use super::layout::{Sheet, place};
 use super::{Block, Diagram, DrawError, Kind, MAX_BLOCKS, Rate, diagram};
 use crate::Library;
