@@ -203,7 +203,7 @@ impl<'a> Checker<'a> {
         let mut binder: FxHashMap<&str, usize> = FxHashMap::default();
         let lets = body.statements.iter().enumerate().filter(|(_, s)| matches!(s, Statement::Let { .. }));
         for (i, statement) in lets {
-            binder.extend(order::names_of(statement).into_iter().map(|name| (name, i)));
+            binder.extend(order::names_of(statement).map(|name| (name, i)));
         }
         // An accumulator read in the body is its previous value, so only wires make an order.
         let needs: Vec<Vec<usize>> = body
