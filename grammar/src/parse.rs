@@ -4,14 +4,17 @@
 //! each piece gives the errors that the scan has met in it, else the one where pest stopped, else
 //! those of building its tree.
 //!
-//! The submodules turn pairs into the tree, each function one rule: `items`, `expressions`
-//! and `literals`, with `pairs` for walking them. They recurse only where the grammar does, within
-//! [`crate::MAX_NESTING`].
+//! `reader` matches the grammar; a text that it refuses goes to pest, which says where and why. The
+//! other submodules turn what was matched into the tree, each function one rule: `items`,
+//! `expressions` and `literals`, with `pairs` for walking.
 
+#[cfg(test)]
+mod agreement;
 mod expressions;
 mod items;
 mod literals;
 mod pairs;
+mod reader;
 
 use crate::diagnose::{self, Failure};
 use crate::error::{SyntaxError, SyntaxErrorKind};
@@ -20,10 +23,9 @@ use crate::syntax::{Comment, File, Signature, Span};
 use crate::{nesting, recover};
 use pest::Parser;
 use pest::error::{ErrorVariant, InputLocation};
-use pest::iterators::Pairs;
 use std::ops::Range;
 
-/// The parser that pest derives from `tex.pest`.
+/// The parser that pest derives from `tex.pest`; it explains what is wrong.
 #[derive(pest_derive::Parser)]
 #[grammar = "../tex.pest"]
 struct TexParser;
@@ -69,11 +71,13 @@ fn parse_piece(scan: &Scan<'_>, tokens: Range<usize>) -> Result<File, Vec<Syntax
         return Err(scanned);
     }
     nesting::check(scan, &scan.tokens[tokens.clone()]).map_err(|error| vec![error])?;
-    let pairs = run(Rule::file, scan, text.clone())
-        .map_err(|failure| vec![diagnose::explain(scan, tokens, failure)])?;
+    let piece = scan.source.get(text.clone()).unwrap_or_default();
+    let Some(steps) = reader::file(piece) else {
+        return Err(vec![diagnose::explain(scan, tokens, failure(Rule::file, piece, text.start))]);
+    };
     let mut builder =
         Builder { offset: text.start, source: scan.source, comments: &scan.comments, errors: Vec::new() };
-    let file = builder.file(pairs).map_err(|error| vec![error])?;
+    let file = builder.file(&steps).map_err(|error| vec![error])?;
     if builder.errors.is_empty() { Ok(file) } else { Err(builder.errors) }
 }
 
@@ -103,29 +107,29 @@ pub fn parse_signature(text: &str) -> Result<Signature, SyntaxError> {
         return Err(error.clone());
     }
     nesting::check(&scan, &scan.tokens)?;
-    let pairs = run(Rule::signature, &scan, 0..text.len())
-        .map_err(|failure| diagnose::explain(&scan, 0..scan.tokens.len(), failure))?;
+    let Some(steps) = reader::signature(text) else {
+        let failure = failure(Rule::signature, text, 0);
+        return Err(diagnose::explain(&scan, 0..scan.tokens.len(), failure));
+    };
     let mut builder = Builder { offset: 0, source: text, comments: &scan.comments, errors: Vec::new() };
-    let signature = builder.signature(pairs)?;
+    let signature = builder.signature(&steps)?;
     builder.errors.into_iter().next().map_or(Ok(signature), Err)
 }
 
-/// Runs pest on a stretch of the text.
-fn run<'s>(rule: Rule, scan: &Scan<'s>, text: Range<usize>) -> Result<Pairs<'s, Rule>, Failure> {
-    let offset = text.start;
-    let piece = scan.source.get(text).unwrap_or_default();
-    match TexParser::parse(rule, piece) {
-        Ok(pairs) => Ok(pairs),
-        Err(error) => {
-            let at = match error.location {
-                InputLocation::Pos(at) | InputLocation::Span((at, _)) => offset + at,
-            };
-            let ErrorVariant::ParsingError { positives, .. } = error.variant else {
-                return Err(Failure { at, expected: Vec::new() });
-            };
-            Err(Failure { at, expected: expected(&positives) })
-        }
-    }
+/// Where pest stops in a text that can't be read, and what it tried there. The text begins at
+/// `offset` in the file.
+fn failure(rule: Rule, text: &str, offset: usize) -> Failure {
+    let Err(error) = TexParser::parse(rule, text) else {
+        return Failure { at: offset, expected: Vec::new() };
+    };
+    let at = match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => offset + at,
+    };
+    let expected = match error.variant {
+        ErrorVariant::ParsingError { positives, .. } => expected(&positives),
+        ErrorVariant::CustomError { .. } => Vec::new(),
+    };
+    Failure { at, expected }
 }
 
 /// Whether a token, read on its own, is what a literal's rule wants.

@@ -36,17 +36,17 @@ impl OpenChain {
 impl<'s> Builder<'s> {
     /// A flat row of operands and operators, nested by precedence with a stack of open chains whose
     /// precedences rise.
-    pub(super) fn chain(&mut self, pair: Pair<'s>) -> Built<Expr> {
-        let mut parts = Parts::of(pair);
-        let mut operand = self.next_expr(&mut parts)?;
+    pub(super) fn expr(&mut self, pair: Pair<'s>) -> Built<Expr> {
+        let mut parts = self.parts_of(pair);
+        let mut operand = self.next_unary(&mut parts)?;
         let mut open: Vec<OpenChain> = Vec::new();
         while let Some(sign) = parts.next() {
-            let operator = self.operator(&sign)?;
+            let operator = self.operator(sign)?;
             let operator_span = sign.span;
             while let Some(chain) = open.pop_if(|chain| chain.operator.precedence() > operator.precedence()) {
                 operand = chain.finish(operand);
             }
-            let next = self.next_expr(&mut parts)?;
+            let next = self.next_unary(&mut parts)?;
             let left = std::mem::replace(&mut operand, next);
             match open.last_mut() {
                 Some(chain) if chain.operator.precedence() == operator.precedence() => {
@@ -66,7 +66,7 @@ impl<'s> Builder<'s> {
         }
     }
 
-    fn operator(&self, pair: &Pair<'s>) -> Built<BinaryOperator> {
+    fn operator(&self, pair: Pair<'s>) -> Built<BinaryOperator> {
         use BinaryOperator as Op;
         const ALL: [BinaryOperator; 13] = [
             Op::Multiply,
@@ -87,8 +87,9 @@ impl<'s> Builder<'s> {
         operator.ok_or_else(|| self.missing("an operator"))
     }
 
-    pub(super) fn unary(&mut self, pair: Pair<'s>) -> Built<Expr> {
-        let mut parts = Parts::of(pair);
+    fn next_unary(&mut self, parts: &mut Parts<'s>) -> Built<Expr> {
+        let pair = self.next(parts, "an operand")?;
+        let mut parts = self.parts_of(pair);
         let mut operators = Vec::new();
         while let Some(prefix) = parts.accept(Rule::prefix) {
             let operator = if prefix.text == "-" { UnaryOperator::Negate } else { UnaryOperator::Not };
@@ -105,7 +106,7 @@ impl<'s> Builder<'s> {
 
     fn postfix(&mut self, pair: Pair<'s>) -> Built<Expr> {
         let span = pair.span;
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let base = self.next(&mut parts, "an operand")?;
         let base = self.primary(base)?;
         let links: Vec<Postfix> = parts.map(|link| self.link(link)).collect::<Built<_>>()?;
@@ -118,7 +119,7 @@ impl<'s> Builder<'s> {
     fn link(&mut self, pair: Pair<'s>) -> Built<Postfix> {
         let span = pair.span;
         if pair.rule == Rule::index {
-            let index = self.next_expr(&mut Parts::of(pair))?;
+            let index = self.only_expr(pair)?;
             return Ok(Postfix::Index(Box::new(index), span));
         }
         Ok(match self.reference(pair)? {
@@ -129,7 +130,7 @@ impl<'s> Builder<'s> {
 
     /// A name, with its arguments if it is a call.
     fn reference(&mut self, pair: Pair<'s>) -> Built<(Call, bool)> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let name = self.next_name(&mut parts)?;
         let dim = parts.accept(Rule::call_dim).map(|dim| self.dim(dim)).transpose()?;
         let arguments = parts.next();
@@ -140,7 +141,7 @@ impl<'s> Builder<'s> {
 
     fn arguments(&mut self, pair: Pair<'s>) -> Built<Vec<Argument>> {
         let mut arguments: Vec<Argument> = Vec::new();
-        for part in Parts::of(pair) {
+        for part in self.parts_of(pair) {
             let argument = self.argument(part)?;
             let before = arguments.last().and_then(|before| before.name.as_ref());
             if let (None, Some(named)) = (&argument.name, before) {
@@ -153,8 +154,8 @@ impl<'s> Builder<'s> {
     }
 
     fn argument(&mut self, pair: Pair<'s>) -> Built<Argument> {
-        let mut parts = Parts::of(pair);
-        let name = parts.accept(Rule::name).map(|name| self.name(&name));
+        let mut parts = self.parts_of(pair);
+        let name = parts.accept(Rule::name).map(|name| self.name(name));
         let value = self.next(&mut parts, "an argument")?;
         let value = if value.rule == Rule::lambda { self.lambda(value)? } else { self.expr(value)? };
         Ok(Argument { name, value })
@@ -162,7 +163,7 @@ impl<'s> Builder<'s> {
 
     fn lambda(&mut self, pair: Pair<'s>) -> Built<Expr> {
         let span = pair.span;
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let inputs = self.next(&mut parts, "a lambda's inputs")?;
         let inputs = self.names(inputs);
         let body = Box::new(self.next_expr(&mut parts)?);
@@ -172,37 +173,39 @@ impl<'s> Builder<'s> {
     fn primary(&mut self, pair: Pair<'s>) -> Built<Expr> {
         let span = pair.span;
         let kind = match pair.rule {
-            Rule::paren => ExprKind::Paren(Box::new(self.next_expr(&mut Parts::of(pair))?)),
-            Rule::list => ExprKind::List(Parts::of(pair).map(|item| self.expr(item)).collect::<Built<_>>()?),
+            Rule::paren => ExprKind::Paren(Box::new(self.only_expr(pair)?)),
+            Rule::list => {
+                ExprKind::List(self.parts_of(pair).map(|item| self.expr(item)).collect::<Built<_>>()?)
+            }
             Rule::choice => self.choice(pair)?,
             Rule::fold => ExprKind::Fold(Box::new(self.fold(pair)?)),
             Rule::reference => match self.reference(pair)? {
                 (call, true) => ExprKind::Call(call),
                 (call, false) => ExprKind::Name(call.name.text),
             },
-            _ => self.literal(&pair),
+            _ => self.literal(pair),
         };
         Ok(Expr { span, kind })
     }
 
     fn choice(&mut self, pair: Pair<'s>) -> Built<ExprKind> {
         let mut arms = Vec::new();
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         loop {
             let head = self.next(&mut parts, "an arm")?;
             if head.rule == Rule::arm {
-                let otherwise = Box::new(self.next_expr(&mut Parts::of(head))?);
+                let otherwise = Box::new(self.only_expr(head)?);
                 return Ok(ExprKind::If { arms, otherwise });
             }
             let condition = self.expr(head)?;
             let arm = self.next(&mut parts, "an arm")?;
-            arms.push((condition, self.next_expr(&mut Parts::of(arm))?));
+            arms.push((condition, self.only_expr(arm)?));
         }
     }
 
     pub(super) fn range(&mut self, pair: Pair<'s>) -> Built<Range> {
         let span = pair.span;
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let start = Box::new(self.next_expr(&mut parts)?);
         let inclusive = self.next(&mut parts, "`..`")?.text == "..=";
         let end = Box::new(self.next_expr(&mut parts)?);
@@ -210,7 +213,7 @@ impl<'s> Builder<'s> {
     }
 
     fn fold(&mut self, pair: Pair<'s>) -> Built<Fold> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let mut accumulators = Vec::new();
         while let Some(accumulator) = parts.accept(Rule::accumulator) {
             accumulators.push(self.accumulator(accumulator)?);
@@ -226,11 +229,11 @@ impl<'s> Builder<'s> {
     }
 
     fn accumulator(&mut self, pair: Pair<'s>) -> Built<(Name, Expr)> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         Ok((self.next_name(&mut parts)?, self.next_expr(&mut parts)?))
     }
 
     fn fold_part(&mut self, parts: &mut Parts<'s>, rule: Rule) -> Built<Option<Expr>> {
-        parts.accept(rule).map(|part| self.next_expr(&mut Parts::of(part))).transpose()
+        parts.accept(rule).map(|part| self.only_expr(part)).transpose()
     }
 }

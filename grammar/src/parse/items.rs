@@ -1,6 +1,7 @@
 //! Pairs of files, items, types and statements.
 
 use super::pairs::{Pair, Parts};
+use super::reader::Step;
 use super::{Builder, Rule};
 use crate::error::{SyntaxError, SyntaxErrorKind};
 use crate::syntax::{
@@ -8,15 +9,13 @@ use crate::syntax::{
     Statement, Text, Type, TypeKind,
 };
 
-use pest::iterators::Pairs;
-
 type Built<T> = Result<T, SyntaxError>;
 
 impl<'s> Builder<'s> {
-    pub(super) fn file(&mut self, pairs: Pairs<'_, Rule>) -> Built<File> {
-        let file = self.nodes(pairs)?;
+    pub(super) fn file(&mut self, steps: &'s [Step]) -> Built<File> {
+        let file = self.next(&mut self.parts(steps), "a file")?;
         let mut items: Vec<Item> = Vec::new();
-        for part in Parts::of(file) {
+        for part in self.parts_of(file) {
             let before = items.last().map_or(self.offset as u32, |item| item.span.end);
             items.push(self.item(part, before)?);
         }
@@ -47,16 +46,16 @@ impl<'s> Builder<'s> {
     }
 
     fn item(&mut self, pair: Pair<'s>, before: u32) -> Built<Item> {
-        let pair = self.next(&mut Parts::of(pair), "an item")?;
+        let pair = self.only(pair, "an item")?;
         let span = pair.span;
         let doc = self.doc(CommentKind::Doc, before, span.start);
         let kind = match pair.rule {
             Rule::use_item => self.use_item(pair)?,
             Rule::let_item => self.let_item(pair)?,
             Rule::param_item => self.param_item(pair)?,
-            Rule::node_item => ItemKind::Node(self.node(&mut Parts::of(pair))?.0),
+            Rule::node_item => ItemKind::Node(self.node(&mut self.parts_of(pair))?.0),
             Rule::texture_item => {
-                let (node, tiles) = self.node(&mut Parts::of(pair))?;
+                let (node, tiles) = self.node(&mut self.parts_of(pair))?;
                 ItemKind::Texture { node, tiles }
             }
             _ => return Err(self.missing("an item")),
@@ -65,22 +64,22 @@ impl<'s> Builder<'s> {
     }
 
     fn use_item(&mut self, pair: Pair<'s>) -> Built<ItemKind> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let path = self.next(&mut parts, "a path")?;
-        let path = Text { value: self.text(&path), span: path.span };
-        let alias = parts.next().map(|name| self.name(&name));
+        let path = Text { value: self.text(path), span: path.span };
+        let alias = parts.next().map(|name| self.name(name));
         Ok(ItemKind::Use { path, alias })
     }
 
     fn let_item(&mut self, pair: Pair<'s>) -> Built<ItemKind> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let name = self.next_name(&mut parts)?;
         let value = self.next_expr(&mut parts)?;
         Ok(ItemKind::Let { name, value })
     }
 
     fn param_item(&mut self, pair: Pair<'s>) -> Built<ItemKind> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let name = self.next_name(&mut parts)?;
         let ty = self.next_type(&mut parts)?;
         let default = self.next_expr(&mut parts)?;
@@ -95,15 +94,15 @@ impl<'s> Builder<'s> {
         let outputs = self.next(parts, "outputs")?;
         let outputs = self.fields(outputs)?;
         let tiles = parts.accept(Rule::tiles);
-        let tiles = tiles.map(|tiles| self.next_expr(&mut Parts::of(tiles))).transpose()?;
+        let tiles = tiles.map(|tiles| self.only_expr(tiles)).transpose()?;
         let body = self.next(parts, "a body")?;
         let body = self.body(body)?;
         Ok((Node { name, dims, inputs, outputs, body }, tiles))
     }
 
-    pub(super) fn signature(&mut self, pairs: Pairs<'_, Rule>) -> Built<Signature> {
-        let signature = self.nodes(pairs)?;
-        let mut parts = Parts::of(signature);
+    pub(super) fn signature(&mut self, steps: &'s [Step]) -> Built<Signature> {
+        let signature = self.next(&mut self.parts(steps), "a signature")?;
+        let mut parts = self.parts_of(signature);
         let dims = self.dims(&mut parts);
         let inputs = self.inputs(&mut parts)?;
         let output = self.next_type(&mut parts)?;
@@ -116,11 +115,11 @@ impl<'s> Builder<'s> {
 
     fn inputs(&mut self, parts: &mut Parts<'s>) -> Built<Vec<Input>> {
         let inputs = self.next(parts, "inputs")?;
-        Parts::of(inputs).map(|input| self.input(input)).collect()
+        self.parts_of(inputs).map(|input| self.input(input)).collect()
     }
 
     fn input(&mut self, pair: Pair<'s>) -> Built<Input> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let name = self.next_name(&mut parts)?;
         let ty = self.next_type(&mut parts)?;
         let default = parts.next().map(|value| self.expr(value)).transpose()?;
@@ -128,17 +127,17 @@ impl<'s> Builder<'s> {
     }
 
     fn fields(&mut self, pair: Pair<'s>) -> Built<Vec<Field>> {
-        Parts::of(pair).map(|field| self.field(field)).collect()
+        self.parts_of(pair).map(|field| self.field(field)).collect()
     }
 
     fn field(&mut self, pair: Pair<'s>) -> Built<Field> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         Ok(Field { name: self.next_name(&mut parts)?, ty: self.next_type(&mut parts)? })
     }
 
-    /// A type whose inner types are built.
+    /// A type.
     pub(super) fn ty(&mut self, pair: Pair<'s>) -> Built<Type> {
-        let pair = self.next(&mut Parts::of(pair), "a type")?;
+        let pair = self.only(pair, "a type")?;
         let span = pair.span;
         let kind = match pair.rule {
             Rule::record => TypeKind::Record(self.fields(pair)?),
@@ -149,12 +148,12 @@ impl<'s> Builder<'s> {
     }
 
     fn named_type(&mut self, pair: Pair<'s>) -> Built<TypeKind> {
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         let name = self.next_name(&mut parts)?;
         if let Some(dim) = parts.accept(Rule::dim) {
             return Ok(TypeKind::Named { name, dim: Some(self.dim(dim)?) });
         }
-        let others: Vec<Name> = parts.map(|part| self.name(&part)).collect();
+        let others: Vec<Name> = parts.map(|part| self.name(part)).collect();
         if others.is_empty() {
             return Ok(TypeKind::Named { name, dim: None });
         }
@@ -163,7 +162,7 @@ impl<'s> Builder<'s> {
 
     fn node_type(&mut self, pair: Pair<'s>) -> Built<TypeKind> {
         let mut inputs = Vec::new();
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         while let Some(field) = parts.accept(Rule::inner_field) {
             inputs.push(self.field(field)?);
         }
@@ -173,9 +172,9 @@ impl<'s> Builder<'s> {
 
     /// `<n>` of a type or of a call.
     pub(super) fn dim(&mut self, pair: Pair<'s>) -> Built<Dim> {
-        let pair = self.next(&mut Parts::of(pair), "a dimension")?;
+        let pair = self.only(pair, "a dimension")?;
         if pair.rule == Rule::name {
-            return Ok(Dim::Name(self.name(&pair)));
+            return Ok(Dim::Name(self.name(pair)));
         }
         let span = pair.span;
         let number = pair.text.parse().unwrap_or_else(|_| {
@@ -188,15 +187,15 @@ impl<'s> Builder<'s> {
 
     pub(super) fn body(&mut self, pair: Pair<'s>) -> Built<Body> {
         let span = pair.span;
-        let statements = Parts::of(pair).map(|part| self.statement(part)).collect::<Built<_>>()?;
+        let statements = self.parts_of(pair).map(|part| self.statement(part)).collect::<Built<_>>()?;
         Ok(Body { statements, span })
     }
 
     fn statement(&mut self, pair: Pair<'s>) -> Built<Statement> {
-        let pair = self.next(&mut Parts::of(pair), "a statement")?;
+        let pair = self.only(pair, "a statement")?;
         let span = pair.span;
         let is_let = pair.rule == Rule::binding;
-        let mut parts = Parts::of(pair);
+        let mut parts = self.parts_of(pair);
         if is_let {
             let pattern = self.next(&mut parts, "a pattern")?;
             let pattern = self.pattern(pattern)?;

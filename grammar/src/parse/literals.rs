@@ -7,7 +7,7 @@ use crate::syntax::{ExprKind, Span};
 use std::f64::consts::{PI, TAU};
 
 impl<'s> Builder<'s> {
-    pub(super) fn literal(&mut self, pair: &Pair<'s>) -> ExprKind {
+    pub(super) fn literal(&mut self, pair: Pair<'s>) -> ExprKind {
         match pair.rule {
             Rule::text => ExprKind::Text(self.text(pair)),
             Rule::color => ExprKind::Color(color(pair.text)),
@@ -16,7 +16,7 @@ impl<'s> Builder<'s> {
         }
     }
 
-    fn number(&mut self, pair: &Pair<'s>) -> ExprKind {
+    fn number(&mut self, pair: Pair<'s>) -> ExprKind {
         let text = pair.text;
         if text.bytes().all(|byte| byte.is_ascii_digit()) {
             return ExprKind::Int(text.parse().ok());
@@ -35,7 +35,7 @@ impl<'s> Builder<'s> {
     }
 
     /// The value of a string literal.
-    pub(super) fn text(&mut self, pair: &Pair<'s>) -> String {
+    pub(super) fn text(&mut self, pair: Pair<'s>) -> String {
         let span = pair.span;
         let quoted = pair.text;
         let inner = quoted.get(1..quoted.len() - 1).unwrap_or_default();
