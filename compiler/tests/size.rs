@@ -1,7 +1,7 @@
 //! Long and deep programs: they compile, or give one coded error; on a test thread's small stack.
 
 use std::collections::HashMap;
-use texgraph_compiler::{Compiled, Failure, Library, Options, compile};
+use texgraph_compiler::{Compiled, Failure, Library, Options, check, compile};
 
 fn compiled(text: String) -> Result<Compiled, Failure> {
     let library = Library::standard().expect("the library parses");
@@ -85,27 +85,40 @@ fn specialised_nodes_are_bounded_at_4096() {
         format!("node f(x: float, k: int) -> (y: float) {{ y = x * k }}\n{}", height(&calls.join(" + ")))
     };
     assert!(codes(compiled(calls(4_096))).is_empty());
-    assert_eq!(codes(compiled(calls(4_097))), ["E0401"]);
+    let one_more = "E0401 a texture may use 4096 nodes, each with its own constants; `f` is one too many";
+    assert_eq!(errors(calls(4_097)), [one_more]);
+}
+
+/// The errors of a program. Checked only: compiling takes longer and has no bound of its own.
+fn errors(text: String) -> Vec<String> {
+    let library = Library::standard().expect("the library parses");
+    let files: HashMap<String, String> = [("t.tex".to_owned(), text)].into();
+    match check(&library, "t.tex", &files) {
+        Ok(_) => Vec::new(),
+        Err(failure) => failure.diagnostics.iter().map(|d| format!("{} {}", d.code, d.message)).collect(),
+    }
 }
 
 #[test]
 fn values_are_bounded_at_200000() {
-    let parts: Vec<String> = (0..29_000).map(|i| format!("a*{i}.5-b/{i}.25")).collect();
-    let text = |n: usize| {
-        let sum = parts[..n].join("+");
-        format!("texture t(uv: vec2) -> (height: float) {{ let a = uv.x let b = uv.y height = {sum} }}")
+    // One for each sum; one each for `uv`, `uv.x`, 1 and 1.0.
+    let sums = |count: usize| errors(height(&format!("uv.x{}", "+1".repeat(count - 4))));
+    assert!(sums(200_000).is_empty());
+    assert_eq!(sums(200_001), ["E0402 a texture may hold 200000 operations; in `t` it passes that"]);
+}
+
+#[test]
+fn values_are_bounded_in_all_nodes_together() {
+    // Seven in the texture: `uv`, `uv.x`, the call of each node with its output, and their sum. In a
+    // node one for each sum, and its input, 1 and 1.0.
+    let nodes = |first: usize, second: usize| {
+        let node = |name: &str, count: usize| {
+            format!("node {name}(x: float) -> (y: float) {{ let z = x{} y = z }}\n", "+1".repeat(count - 3))
+        };
+        errors(format!("{}{}{}", node("f", first), node("g", second), height("f(uv.x) + g(uv.x)")))
     };
-    assert!(codes(compiled(text(1_000))).is_empty());
-    let many = "y = uv.x".to_owned() + &(0..100_100).map(|i| format!("*{i}")).collect::<String>();
-    assert!(many.len() < 1 << 20);
-    let text = format!("texture t(uv: vec2) -> (height: float) {{ let {many} height = y }}");
-    assert_eq!(codes(compiled(text)), ["E0402"]);
-    // The bound is the texture's, not a function's.
-    let long = (0..30_000).map(|i| format!("*{i}")).collect::<String>();
-    let node = |i: usize| format!("node f{i}(x: float) -> (y: float) {{ y = x{long}+{i} }}\n");
-    let text = (0..4).map(node).collect::<String>() + &height("f0(uv.x) + f1(uv.x) + f2(uv.x) + f3(uv.x)");
-    assert!(text.len() < 1 << 20, "{}", text.len());
-    assert_eq!(codes(compiled(text)), ["E0402"]);
+    assert!(nodes(100_000, 99_993).is_empty());
+    assert_eq!(nodes(100_000, 99_994), ["E0402 a texture may hold 200000 operations; in `t` it passes that"]);
 }
 
 #[test]
