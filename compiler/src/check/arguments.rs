@@ -4,7 +4,7 @@ use super::call::accepts;
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;
 use super::{Checker, Frame};
-use crate::diagnostic::{Place, arguments as sentences, names, nodes, types as errors};
+use crate::diagnostic::{Place, arguments as sentences, limits, names, nodes, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
 use crate::resource::KINDS;
 use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name, TypeKind};
@@ -267,6 +267,12 @@ impl<'a> Checker<'a> {
             let wire = self.expr(f, default);
             return self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
         }
+        if f.defaults.iter().any(|outer| std::ptr::eq(*outer, default)) {
+            return self.report(f, names::recursion(place, head.name));
+        }
+        if f.defaults.len() == limits::MAX_DEFAULTS {
+            return self.report(f, limits::defaults_too_deep(place, head.name));
+        }
         let earlier = head.inputs.iter().zip(&bound.wires);
         let scope = earlier.map(|(input, wire)| (input.name.text.as_str(), wire.clone())).collect();
         let module = std::mem::replace(&mut f.module, head.module);
@@ -277,8 +283,10 @@ impl<'a> Checker<'a> {
         // A name that the caller binds is not the default's.
         let outer = std::mem::take(&mut f.bound);
         f.foreign += 1;
+        f.defaults.push(default);
         let wire = self.expr(f, default);
         let wire = self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
+        f.defaults.pop();
         f.foreign -= 1;
         (f.module, f.dims, f.scopes) = (module, dims, scopes);
         (f.unknown, f.base, f.bound) = (unknown, base, outer);

@@ -60,6 +60,8 @@ pub struct Frame<'a> {
     pub(super) progress: FxHashMap<*const Postfix, (usize, Wire)>,
     /// Expressions are evaluated for other names than the step's own: a fold's body, a default.
     pub(super) foreign: u32,
+    /// The defaults that are being evaluated, each for the one before.
+    pub(super) defaults: Vec<&'a Expr>,
     /// Index of the frame that waits for this one.
     pub(super) parent: Option<usize>,
     /// The call in a user's file that leads here.
@@ -90,6 +92,7 @@ impl<'a> Frame<'a> {
             failed: false,
             progress: FxHashMap::default(),
             foreign: 0,
+            defaults: Vec::new(),
             parent: None,
             caller: None,
             current: "",

@@ -10,6 +10,8 @@ pub const MAX_VALUES: usize = 200_000;
 pub const MAX_EVALUATION: u64 = 1_000_000;
 /// Steps of a fold, times those of the folds inside it.
 pub const MAX_STEPS: u32 = 65_536;
+/// Defaults that call nodes for whose defaults further nodes are called, each inside the next.
+pub const MAX_DEFAULTS: usize = 32;
 /// Entries of a constant table.
 pub const MAX_TABLE: usize = 2_047;
 
@@ -22,6 +24,13 @@ pub fn too_many_nodes(place: Place, name: &str) -> Diagnostic {
         "this call",
     )
     .help("pass numbers that vary as params or computed values instead of constants")
+}
+
+/// Defaults inside defaults.
+pub fn defaults_too_deep(place: Place, name: &str) -> Diagnostic {
+    let message = format!("defaults nest {MAX_DEFAULTS} levels deep before those of `{name}`");
+    Diagnostic::new("E0002", place, message, "this call needs them")
+        .help("give some of these nodes their arguments")
 }
 
 /// More values than a texture may have.
