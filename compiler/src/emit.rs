@@ -10,6 +10,12 @@ const GREATEST_SHORT: &str = "340282350000000000000000000000000000000f";
 /// The greatest float.
 const GREATEST: &str = "3.4028234663852886e38f";
 
+/// The bounds of [`crate::intrinsic`], which the writer prints without an exponent, ...
+const LONG: [&str; 2] =
+    ["0.0000000000000000000000000000000000001f", "100000000000000000000000000000000000000f"];
+/// ... and with it.
+const SHORT: [&str; 2] = ["1e-37f", "1e38f"];
+
 /// The module as WGSL.
 ///
 /// # Errors
@@ -23,6 +29,8 @@ pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let text = replaced(text, ") \nvar", ") var");
     let text = replaced(text, "@fragment \n", "@fragment\n");
     let text = replaced(text, GREATEST_SHORT, GREATEST);
+    let text = replaced(text, LONG[0], SHORT[0]);
+    let text = replaced(text, LONG[1], SHORT[1]);
     Ok(lowered.names.apply(&text, &lowered.results))
 }
 

@@ -11,14 +11,16 @@ use texgraph_compiler::graph::{Constant, Scalar};
 const ULP: f64 = 1.0 / 8_388_608.0;
 /// Smaller results may be 0.
 const LEAST: f64 = f32::MIN_POSITIVE as f64;
-/// Of `sin` and `cos` within −π..π, where the rows bring every angle first.
+/// 2¹²⁶: quotients by greater divisors have no accuracy.
+const DIVISOR: f64 = 8.507_059_173_023_462e37;
+/// Of `sin` and `cos` within −π..π.
 const TURN: f64 = 1.0 / 2_048.0;
 
 /// How far component `i` of a row's result may be off, for arguments and the right value.
-/// Ints and bools may not.
+/// Ints and bools may not, but for where a float passes the greatest int.
 pub fn bound(name: &str, arguments: &[Constant], value: &Constant, i: usize) -> f64 {
     if value.scalar() != Scalar::Float {
-        return 0.0;
+        return if value.int(i) == i32::MAX && matches!(name, "(int)" | "ifloor") { 127.0 } else { 0.0 };
     }
     let x = |k: usize| arguments.get(k).map_or(0.0, |c| component(c, i));
     let right = f64::from(value.float(i));
@@ -35,14 +37,16 @@ pub fn bound(name: &str, arguments: &[Constant], value: &Constant, i: usize) -> 
         "/" | "(/)" => ulps(2.5),
         "%" => remainder(x(0), x(1)),
         // x·(1 − t) + y·t: four roundings, each of a term.
-        "mix" => 4.0 * ULP * ((x(0) * (1.0 - x(2))).abs() + (x(1) * x(2)).abs()) + LEAST,
+        "mix" => 4.0 * (ULP * ((x(0) * (1.0 - x(2))).abs() + (x(1) * x(2)).abs()) + LEAST),
         // t is a quotient of differences (2.5 + 2 ULP), its polynomial at most doubles that, and
         // has five roundings below 3.
         "smoothstep" => 24.0 * ULP,
-        "sin" | "cos" => TURN,
-        "tan" => tangent(right),
+        "sin" | "cos" => angle(x(0)).min(2.0),
+        "tan" => tangent(angle(x(0)), right),
         // The worse of 6.77e-5 and what atan2 of a root gives.
         "asin" | "acos" | "(asin)" | "(acos)" => 6.77e-5 + 4_096.0 * ULP * right.abs(),
+        // A quotient's: nothing is promised where an argument is greater than a divisor may be.
+        "atan2" | "(atan2)" if x(0).abs().max(x(1).abs()) > DIVISOR => f64::INFINITY,
         "atan2" | "(atan2)" => ulps(4_096.0),
         "exp" | "exp2" => ulps(3.0 + 2.0 * x(0).abs()),
         "log" | "log2" | "(log)" | "(log2)" => logarithm(x(0), right),
@@ -68,14 +72,25 @@ fn component(c: &Constant, i: usize) -> f64 {
 /// product and the difference are rounded.
 fn remainder(x: f64, y: f64) -> f64 {
     let quotient = if y == 0.0 { 0.0 } else { x / y };
-    let floors = if quotient.abs() < 1.0 / (3.0 * ULP) { 0.0 } else { 3.0 * ULP * quotient.abs() };
+    let floors = match quotient.abs() {
+        // It may be 0, and of a negative one the floor is -1.
+        q if q < LEAST => 1.0,
+        q if q < 1.0 / (3.0 * ULP) => 0.0,
+        q => 3.0 * ULP * q,
+    };
     y.abs() * floors + 3.0 * ULP * x.abs().max(y.abs()) + LEAST
 }
 
-/// sin / cos, each off by [`TURN`]: nothing is known of it where the cosine may be 0.
-fn tangent(right: f64) -> f64 {
+/// Beyond −π..π WGSL promises nothing. Whole turns are taken off as floats: that costs what an
+/// angle has of bits below its last one, twice.
+fn angle(x: f64) -> f64 {
+    TURN + 2.0 * ULP * x.abs()
+}
+
+/// sin / cos, each off by so much: nothing is known of it where the cosine may be 0.
+fn tangent(off: f64, right: f64) -> f64 {
     let cosine = 1.0 / (1.0 + right * right).sqrt();
-    if cosine <= TURN { f64::INFINITY } else { TURN * (1.0 + right.abs()) / (cosine - TURN) }
+    if cosine <= off { f64::INFINITY } else { off * (1.0 + right.abs()) / (cosine - off) }
 }
 
 /// 2⁻²¹ absolute within 0.5..2, else 3 ULP.

@@ -126,6 +126,14 @@ impl Case {
         format!("{}({})", self.name, inputs.join(", "))
     }
 
+    /// A name for a file, different from every other case's.
+    pub fn file_name(&self) -> String {
+        let name: String = self.name.bytes().map(|byte| format!("{byte:02x}")).collect();
+        let rest = format!("{}-{:?}", self.describe(), self.bands.first());
+        let rest: String = rest.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+        format!("{name}{rest}.wgsl")
+    }
+
     /// The texture. `low` and `high` are the result; of ints, their lower and upper 16 bits.
     pub fn text(&self) -> String {
         let mut text = params();

@@ -4,7 +4,7 @@
 //! operation with constant operands that the shader language forbids is ever emitted.
 
 use super::*;
-use crate::graph::{Builder, Constant, Scalar, Value};
+use crate::graph::{Builder, Constant, Operation, Scalar, Value};
 
 /// Values of one shape, made tersely.
 struct Shape<'a> {
@@ -31,11 +31,24 @@ impl<'a> Shape<'a> {
     }
 }
 
-/// Quotient, 0 for a divisor of 0.
+/// Where a number counts as 0; nowhere if it is the greater of something and a number that does not.
+fn is_empty(s: &mut Shape, v: Value) -> Value {
+    let least = s.float(value::LEAST);
+    if let Operation::Builtin(MAXIMUM, of) = s.b.operation(v)
+        && let Some(c) = s.b.as_constant(of[1])
+        && (0..usize::from(c.width())).all(|i| c.float(i) >= value::LEAST)
+    {
+        return s.b.constant(Constant::bools(&[false]).splat(s.width));
+    }
+    let size = s.call(ABSOLUTE, &[v]);
+    s.call(COMPONENT_LESS, &[size, least])
+}
+
+/// Quotient, 0 for a divisor that counts as 0.
 pub fn divide(b: &mut Builder, v: &[Value]) -> Value {
     let mut s = Shape::of(b, v[0]);
     let zero = s.float(0.0);
-    let empty = s.call(COMPONENT_EQUAL, &[v[1], zero]);
+    let empty = is_empty(&mut s, v[1]);
     // A constant divisor of 0 must not reach the shader.
     if s.b.as_constant(empty).is_some_and(|c| (0..usize::from(c.width())).any(|i| c.bool(i))) {
         let one = s.float(1.0);
@@ -55,7 +68,7 @@ pub fn remainder(b: &mut Builder, v: &[Value]) -> Value {
     let part = s.call(MULTIPLY, &[v[1], whole]);
     let rest = s.call(SUBTRACT, &[v[0], part]);
     let zero = s.float(0.0);
-    let empty = s.call(COMPONENT_EQUAL, &[v[1], zero]);
+    let empty = is_empty(&mut s, v[1]);
     s.call(CHOOSE, &[empty, zero, rest])
 }
 
@@ -154,7 +167,7 @@ pub fn clamp_int(b: &mut Builder, v: &[Value]) -> Value {
     b.builtin(MINIMUM_INT, &[raised, v[2]])
 }
 
-/// The cubic between the bounds, a step where they are equal.
+/// The cubic between the bounds, a step where there is nothing between them.
 pub fn smoothstep(b: &mut Builder, v: &[Value]) -> Value {
     let mut s = Shape::of(b, v[2]);
     let (zero, one) = (s.float(0.0), s.float(1.0));
@@ -169,7 +182,7 @@ pub fn smoothstep(b: &mut Builder, v: &[Value]) -> Value {
     let smooth = s.call(MULTIPLY, &[square, rest]);
     let left = s.call(COMPONENT_LESS, &[v[2], v[0]]);
     let step = s.call(CHOOSE, &[left, zero, one]);
-    let flat = s.call(COMPONENT_EQUAL, &[v[0], v[1]]);
+    let flat = is_empty(&mut s, span);
     s.call(CHOOSE, &[flat, step, smooth])
 }
 
@@ -189,14 +202,14 @@ pub fn root(b: &mut Builder, v: &[Value]) -> Value {
     s.call(RAW_SQRT, &[inside])
 }
 
-/// 0 where the argument is not positive.
+/// 0 where the argument is not positive, or counts as 0.
 fn of_positive(b: &mut Builder, raw: Intrinsic, v: &[Value]) -> Value {
     let mut s = Shape::of(b, v[0]);
-    let (zero, one) = (s.float(0.0), s.float(1.0));
-    let good = s.call(COMPONENT_LESS, &[zero, v[0]]);
-    let safe = s.call(CHOOSE, &[good, v[0], one]);
+    let (zero, one, least) = (s.float(0.0), s.float(1.0), s.float(value::LEAST));
+    let none = s.call(COMPONENT_LESS, &[v[0], least]);
+    let safe = s.call(CHOOSE, &[none, one, v[0]]);
     let value = s.call(raw, &[safe]);
-    s.call(CHOOSE, &[good, value, zero])
+    s.call(CHOOSE, &[none, zero, value])
 }
 
 /// Natural logarithm, 0 where there is none.
@@ -209,16 +222,41 @@ pub fn logarithm2(b: &mut Builder, v: &[Value]) -> Value {
     of_positive(b, RAW_LOG2, v)
 }
 
-/// 0 where the base is not positive, but 1 for an exponent of 0.
+/// 0 where the base is not positive or counts as 0, but 1 for an exponent of 0.
 pub fn power(b: &mut Builder, v: &[Value]) -> Value {
     let mut s = Shape::of(b, v[0]);
-    let (zero, one) = (s.float(0.0), s.float(1.0));
-    let good = s.call(COMPONENT_LESS, &[zero, v[0]]);
-    let safe = s.call(CHOOSE, &[good, v[0], one]);
+    let (zero, one, least) = (s.float(0.0), s.float(1.0), s.float(value::LEAST));
+    let none = s.call(COMPONENT_LESS, &[v[0], least]);
+    let safe = s.call(CHOOSE, &[none, one, v[0]]);
     let value = s.call(RAW_POW, &[safe, v[1]]);
+    let greatest = s.float(value::GREATEST);
+    let value = s.call(MINIMUM, &[value, greatest]);
     let flat = s.call(COMPONENT_EQUAL, &[v[1], zero]);
     let otherwise = s.call(CHOOSE, &[flat, one, zero]);
-    s.call(CHOOSE, &[good, value, otherwise])
+    s.call(CHOOSE, &[none, otherwise, value])
+}
+
+/// e to a power that is not too great.
+pub fn exponential(b: &mut Builder, v: &[Value]) -> Value {
+    let mut s = Shape::of(b, v[0]);
+    let greatest = s.float(value::GREATEST_EXP);
+    let exponent = s.call(MINIMUM, &[v[0], greatest]);
+    s.call(RAW_EXP, &[exponent])
+}
+
+/// 2 to a power that is not too great.
+pub fn exponential2(b: &mut Builder, v: &[Value]) -> Value {
+    let mut s = Shape::of(b, v[0]);
+    let greatest = s.float(value::GREATEST_EXP2);
+    let exponent = s.call(MINIMUM, &[v[0], greatest]);
+    s.call(RAW_EXP2, &[exponent])
+}
+
+/// Sine by cosine: 0 where the cosine counts as 0.
+pub fn tangent(b: &mut Builder, v: &[Value]) -> Value {
+    let sine = b.builtin(SIN, v);
+    let cosine = b.builtin(COS, v);
+    divide(b, &[sine, cosine])
 }
 
 /// Clamped to −1..1 first.
@@ -239,16 +277,17 @@ pub fn arc_cosine(b: &mut Builder, v: &[Value]) -> Value {
     of_cosine(b, RAW_ACOS, v)
 }
 
-/// The angle of (x, y), 0 for (0, 0).
+/// The angle of (x, y), 0 where both count as 0.
 pub fn arc_tangent(b: &mut Builder, v: &[Value]) -> Value {
     let mut s = Shape::of(b, v[0]);
     let (zero, one) = (s.float(0.0), s.float(1.0));
-    let flat = s.call(COMPONENT_EQUAL, &[v[0], zero]);
-    let empty = s.call(COMPONENT_EQUAL, &[v[1], zero]);
+    let flat = is_empty(&mut s, v[0]);
+    let empty = is_empty(&mut s, v[1]);
     let origin = s.call(COMPONENT_AND, &[flat, empty]);
-    // The angle of (1, 0) is 0.
+    // The angle of (1, 0) is 0. Of a -0 some drivers make NaN.
     let x = s.call(CHOOSE, &[origin, one, v[1]]);
-    s.call(RAW_ATAN2, &[v[0], x])
+    let y = s.call(CHOOSE, &[flat, zero, v[0]]);
+    s.call(RAW_ATAN2, &[y, x])
 }
 
 /// The dot product of a scalar with another is their product; the shader has none.
@@ -256,15 +295,20 @@ pub fn dot(b: &mut Builder, v: &[Value]) -> Value {
     if b.ty(v[0]).width() == 1 { b.builtin(MULTIPLY, v) } else { b.builtin(RAW_DOT, v) }
 }
 
+/// The length of a scalar is its size.
+pub fn length(b: &mut Builder, v: &[Value]) -> Value {
+    if b.ty(v[0]).width() == 1 { b.builtin(ABSOLUTE, v) } else { b.builtin(RAW_LENGTH, v) }
+}
+
 /// The distance of two points.
 pub fn distance(b: &mut Builder, v: &[Value]) -> Value {
     let offset = b.builtin(SUBTRACT, v);
-    b.builtin(LENGTH, &[offset])
+    length(b, &[offset])
 }
 
 /// v / |v|, 0 for 0.
 pub fn normalize(b: &mut Builder, v: &[Value]) -> Value {
-    let length = b.builtin(LENGTH, v);
+    let length = length(b, v);
     let length = b.splat(length, b.ty(v[0]).width());
     divide(b, &[v[0], length])
 }

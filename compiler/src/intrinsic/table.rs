@@ -93,7 +93,7 @@ pub static TABLE: &[Row] = &[
     Row {
         name: "/",
         signature: "<n>(a: vec<n>, b: vec<n>) -> vec<n>",
-        doc: "Quotient; `x / 0` is 0.",
+        doc: "Quotient; `x / 0` is 0, and 0 is whatever is nearer to it than 1e-37.",
         value: Float2(value::divide),
         derivative: Rule(derivative::divide),
         form: Expand(expand::divide),
@@ -269,7 +269,7 @@ pub static TABLE: &[Row] = &[
     Row {
         name: "ifloor",
         signature: "<n>(x: vec<n>) -> ivec<n>",
-        doc: "Rounds down to an int; saturates.",
+        doc: "Rounds down to an int; saturates as `int` does.",
         value: FloatToInt(|x| value::to_int(libm::floorf(x))),
         derivative: Zero,
         form: Expand(expand::floor_int),
@@ -381,7 +381,7 @@ pub static TABLE: &[Row] = &[
     Row {
         name: "smoothstep",
         signature: "<n>(low: vec<n>, high: vec<n>, x: vec<n>) -> vec<n>",
-        doc: "`t²(3 - 2t)` of `t = clamp((x - low)/(high - low), 0, 1)`, which reversed bounds turn round; a step where they are equal.",
+        doc: "`t²(3 - 2t)` of `t = clamp((x - low)/(high - low), 0, 1)`, which reversed bounds turn round; a step where they are equal, or nearer than 1e-37.",
         value: Float3(value::smoothstep),
         derivative: Rule(derivative::smoothstep),
         form: Expand(expand::smoothstep),
@@ -406,25 +406,25 @@ pub static TABLE: &[Row] = &[
         name: "tan",
         signature: "<n>(x: vec<n>) -> vec<n>",
         doc: "Tangent of an angle in radians.",
-        value: Float1(libm::tanf),
+        value: Float1(|x| value::divide(libm::sinf(x), libm::cosf(x))),
         derivative: Rule(derivative::tangent),
-        form: Function("tan"),
+        form: Expand(expand::tangent),
     },
     Row {
         name: "exp",
         signature: "<n>(x: vec<n>) -> vec<n>",
-        doc: "e to the power of x.",
-        value: Float1(libm::expf),
+        doc: "e to the power of x; for what is greater than 87, of 87.",
+        value: Float1(|x| libm::expf(x.min(value::GREATEST_EXP))),
         derivative: Rule(derivative::exponential),
-        form: Function("exp"),
+        form: Expand(expand::exponential),
     },
     Row {
         name: "exp2",
         signature: "<n>(x: vec<n>) -> vec<n>",
-        doc: "2 to the power of x.",
-        value: Float1(libm::exp2f),
+        doc: "2 to the power of x; for what is greater than 126, of 126.",
+        value: Float1(|x| libm::exp2f(x.min(value::GREATEST_EXP2))),
         derivative: Rule(derivative::exponential2),
-        form: Function("exp2"),
+        form: Expand(expand::exponential2),
     },
     Row {
         name: "asin",
@@ -445,8 +445,8 @@ pub static TABLE: &[Row] = &[
     Row {
         name: "atan2",
         signature: "<n>(y: vec<n>, x: vec<n>) -> vec<n>",
-        doc: "The angle of (x, y) in radians, -π to π; 0 for (0, 0).",
-        value: Float2(|y, x| if x == 0.0 && y == 0.0 { 0.0 } else { libm::atan2f(y, x) }),
+        doc: "The angle of (x, y) in radians, -π to π; 0 where both are nearer to 0 than 1e-37. Such a y alone gives 0 or π, whatever its sign.",
+        value: Float2(value::arc_tangent),
         derivative: Rule(derivative::arc_tangent),
         form: Expand(expand::arc_tangent),
     },
@@ -461,23 +461,23 @@ pub static TABLE: &[Row] = &[
     Row {
         name: "log",
         signature: "<n>(x: vec<n>) -> vec<n>",
-        doc: "Natural logarithm; 0 where there is none.",
-        value: Float1(|x| if x > 0.0 { libm::logf(x) } else { 0.0 }),
+        doc: "Natural logarithm; 0 of what is below 1e-37.",
+        value: Float1(|x| value::logarithm(libm::logf, x)),
         derivative: Rule(derivative::logarithm),
         form: Expand(expand::logarithm),
     },
     Row {
         name: "log2",
         signature: "<n>(x: vec<n>) -> vec<n>",
-        doc: "Logarithm of base 2; 0 where there is none.",
-        value: Float1(|x| if x > 0.0 { libm::log2f(x) } else { 0.0 }),
+        doc: "Logarithm of base 2; 0 of what is below 1e-37.",
+        value: Float1(|x| value::logarithm(libm::log2f, x)),
         derivative: Rule(derivative::logarithm2),
         form: Expand(expand::logarithm2),
     },
     Row {
         name: "pow",
         signature: "<n>(x: vec<n>, y: vec<n>) -> vec<n>",
-        doc: "x to the power of y; for x of 0 or less it is 0, and 1 where y is 0.",
+        doc: "x to the power of y, at most 1e38; for x below 1e-37 it is 0, and 1 where y is 0.",
         value: Float2(value::power),
         derivative: Rule(derivative::power),
         form: Expand(expand::power),
@@ -496,7 +496,7 @@ pub static TABLE: &[Row] = &[
         doc: "Euclidean length.",
         value: Whole(value::length),
         derivative: Rule(derivative::length),
-        form: Function("length"),
+        form: Expand(expand::length),
     },
     Row {
         name: "distance",
@@ -549,7 +549,7 @@ pub static TABLE: &[Row] = &[
     Row {
         name: "(int)",
         signature: "<n>(x: vec<n>) -> ivec<n>",
-        doc: "Truncates and saturates.",
+        doc: "Truncates; saturates, upwards somewhere from 2147483520, the greatest int that is a float.",
         value: FloatToInt(value::to_int),
         derivative: Zero,
         form: Convert,
@@ -761,6 +761,30 @@ pub static TABLE: &[Row] = &[
         value: Float2(libm::atan2f),
         derivative: Rule(derivative::arc_tangent),
         form: Function("atan2"),
+    },
+    Row {
+        name: "(exp)",
+        signature: "<n>(x: vec<n>) -> vec<n>",
+        doc: "e to the power of an x of 87 or less.",
+        value: Float1(libm::expf),
+        derivative: Rule(derivative::exponential),
+        form: Function("exp"),
+    },
+    Row {
+        name: "(exp2)",
+        signature: "<n>(x: vec<n>) -> vec<n>",
+        doc: "2 to the power of an x of 126 or less.",
+        value: Float1(libm::exp2f),
+        derivative: Rule(derivative::exponential2),
+        form: Function("exp2"),
+    },
+    Row {
+        name: "(length)",
+        signature: "<n>(v: vec<n>) -> float",
+        doc: "Euclidean length of two components or more.",
+        value: Whole(value::length),
+        derivative: Rule(derivative::length),
+        form: Function("length"),
     },
 ];
 
@@ -1045,3 +1069,12 @@ pub const RAW_POW: Intrinsic = find("(pow)", 0);
 
 /// `(atan2)`
 pub const RAW_ATAN2: Intrinsic = find("(atan2)", 0);
+
+/// `(exp)`
+pub const RAW_EXP: Intrinsic = find("(exp)", 0);
+
+/// `(exp2)`
+pub const RAW_EXP2: Intrinsic = find("(exp2)", 0);
+
+/// `(length)`
+pub const RAW_LENGTH: Intrinsic = find("(length)", 0);

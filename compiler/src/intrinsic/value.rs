@@ -32,19 +32,29 @@ pub fn evaluate(value: &Evaluate, arguments: &[Constant]) -> Constant {
     }
 }
 
-/// No NaN and no infinity leaves an expression: NaN is 0, what overflows saturates.
+/// What is worked out here is a number: NaN is 0, what overflows saturates.
 pub fn finite(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(-f32::MAX, f32::MAX) }
 }
 
-/// `x / y`, 0 where `y` is 0.
+/// Smaller divisors, bases and arguments of logarithms count as 0: graphics hardware may take what
+/// is below 1.2e-38 for 0, and shader languages promise no more of a quotient by it.
+pub const LEAST: f32 = 1e-37;
+/// The greatest power.
+pub const GREATEST: f32 = 1e38;
+/// The greatest exponent of e, ...
+pub const GREATEST_EXP: f32 = 87.0;
+/// ... and of 2, with room to the greatest float for a shader's error.
+pub const GREATEST_EXP2: f32 = 126.0;
+
+/// `x / y`, 0 where `y` counts as 0.
 pub fn divide(x: f32, y: f32) -> f32 {
-    if y == 0.0 { 0.0 } else { x / y }
+    if y.abs() < LEAST { 0.0 } else { x / y }
 }
 
-/// `x − y·floor(x / y)`, 0 where `y` is 0.
+/// `x − y·floor(x / y)`, 0 where `y` counts as 0.
 pub fn remainder(x: f32, y: f32) -> f32 {
-    if y == 0.0 { 0.0 } else { x - finite(y * libm::floorf(finite(x / y))) }
+    if y.abs() < LEAST { 0.0 } else { x - finite(y * libm::floorf(finite(x / y))) }
 }
 
 /// The quotient rounded down; 0 for a divisor of 0, and `MIN / -1` is `MIN`.
@@ -73,8 +83,8 @@ pub fn to_int(x: f32) -> i32 {
 
 /// x to the power of y; 0 where that is not a real number.
 pub fn power(x: f32, y: f32) -> f32 {
-    if x > 0.0 {
-        libm::powf(x, y)
+    if x >= LEAST {
+        libm::powf(x, y).min(GREATEST)
     } else if y == 0.0 {
         1.0
     } else {
@@ -82,9 +92,23 @@ pub fn power(x: f32, y: f32) -> f32 {
     }
 }
 
-/// 0 left of `low`, 1 right of `high`, smooth between; a step where the two are equal.
+/// The angle of (x, y), 0 where both count as 0; a y that counts as 0 lies on the axis.
+pub fn arc_tangent(y: f32, x: f32) -> f32 {
+    match (y.abs() < LEAST, x.abs() < LEAST) {
+        (true, true) => 0.0,
+        (true, false) => libm::atan2f(0.0, x),
+        (false, _) => libm::atan2f(y, x),
+    }
+}
+
+/// The logarithm by `log`, 0 where there is none.
+pub fn logarithm(log: fn(f32) -> f32, x: f32) -> f32 {
+    if x < LEAST { 0.0 } else { log(x) }
+}
+
+/// 0 left of `low`, 1 right of `high`, smooth between; a step where their difference counts as 0.
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
-    if low == high {
+    if (high - low).abs() < LEAST {
         return if x < low { 0.0 } else { 1.0 };
     }
     let t = finite(finite(x - low) / finite(high - low)).clamp(0.0, 1.0);
@@ -105,8 +129,9 @@ fn dot_of(arguments: &[Constant]) -> f32 {
 
 /// Euclidean length.
 pub fn length(arguments: &[Constant]) -> Constant {
-    let square = arguments.first().map_or(0.0, |v| dot_of(&[*v, *v]));
-    Constant::floats(&[finite(libm::sqrtf(square))])
+    let Some(v) = arguments.first() else { return Constant::floats(&[0.0]) };
+    let length = if v.width() == 1 { v.float(0).abs() } else { libm::sqrtf(dot_of(&[*v, *v])) };
+    Constant::floats(&[finite(length)])
 }
 
 /// The same direction with length 1; 0 for 0.

@@ -389,7 +389,6 @@ fn math(name: &str) -> MathFunction {
         "mix" => MathFunction::Mix,
         "sin" => MathFunction::Sin,
         "cos" => MathFunction::Cos,
-        "tan" => MathFunction::Tan,
         "asin" => MathFunction::Asin,
         "acos" => MathFunction::Acos,
         "atan2" => MathFunction::Atan2,

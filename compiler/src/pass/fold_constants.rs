@@ -1,7 +1,7 @@
 //! Constant folding and the few identities that always pay, applied as values are made.
 //!
 //! What has known operands becomes a number, by the row that defines it. Multiplication by 0 may
-//! fold because no NaN and no infinity leaves an expression.
+//! fold because values are numbers: what overflows has no defined value.
 
 use crate::graph::{Constant, Function, Operation, Scalar, Value};
 use crate::intrinsic::{
