@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
         let name = if plain { fold.variable.text.clone() } else { format!("{}_step", fold.variable.text) };
         let step = f.builder.input(name, Type::INT);
         let at = steps.place_of(f, step);
-        f.builder.name(at, &fold.variable.text);
+        f.builder.name(at, fold.variable.text.as_str());
         f.scopes[f.base].insert(&fold.variable.text, Wire::Value(at));
         let mut next = accumulators;
         let mut fine = true;

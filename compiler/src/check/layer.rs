@@ -126,8 +126,8 @@ impl<'a> Frame<'a> {
 /// What a capture is called.
 fn name_of(builder: &Builder, value: Value) -> String {
     let function = builder.function();
-    match (function.names.get(&value), function.operation(value)) {
-        (Some(name), _) => name.clone(),
+    match (function.names.get(value), function.operation(value)) {
+        (Some(name), _) => name.to_string(),
         (None, Operation::Input(i)) => {
             function.inputs.get(*i as usize).map_or(String::new(), |slot| slot.name.clone())
         }

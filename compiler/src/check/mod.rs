@@ -322,7 +322,7 @@ impl<'a> Checker<'a> {
 
     fn bind(&mut self, f: &mut Frame<'a>, name: &'a Name, wire: Wire) {
         if let Wire::Value(value) = wire {
-            f.builder.name(value, &name.text);
+            f.builder.name(value, name.text.as_str());
         }
         // A bare word that reaches a wire is a name that nobody declared.
         let wire =

@@ -4,6 +4,7 @@ use super::interner::Interner;
 use super::{Constant, Function, FunctionId, Level, Operation, Place, Scalar, Slot, Type, Value, View};
 use crate::intrinsic::{Form, Intrinsic, TO_FLOAT, TO_INT};
 use crate::pass::fold_constants::{Folded, fold};
+use std::sync::Arc;
 
 /// A function in the making.
 #[derive(Default)]
@@ -62,9 +63,10 @@ impl Builder {
     }
 
     /// Calls a value by a name, unless it has one already. Constants and inputs keep theirs.
-    pub fn name(&mut self, value: Value, name: impl Into<String>) {
-        if !matches!(self.function.operation(value), Operation::Constant(_) | Operation::Input(_)) {
-            self.function.names.entry(value).or_insert_with(|| name.into());
+    pub fn name(&mut self, value: Value, name: impl Into<Arc<str>>) {
+        let keeps = matches!(self.function.operation(value), Operation::Constant(_) | Operation::Input(_));
+        if !keeps && !self.function.names.contains(value) {
+            self.function.names.insert(value, name);
         }
     }
 
@@ -218,7 +220,7 @@ impl Builder {
     pub fn call(&mut self, id: FunctionId, callee: &Function, arguments: Vec<Value>) -> Vec<Value> {
         let types: Vec<Type> = callee.outputs.iter().map(|(slot, _)| slot.ty).collect();
         let first = types.first().copied().unwrap_or(Type::FLOAT);
-        let call = self.push(Operation::Call(id, arguments.into()), first);
+        let call = self.push(Operation::Call(id, arguments.as_slice().into()), first);
         types.iter().enumerate().map(|(i, ty)| self.push(Operation::Output(call, i as u32), *ty)).collect()
     }
 
@@ -231,7 +233,7 @@ impl Builder {
     }
 
     /// An entry of a constant table whose entries have one type; the index is an int, clamped.
-    pub fn lookup(&mut self, table: std::sync::Arc<[Constant]>, index: Value) -> Value {
+    pub fn lookup(&mut self, table: Arc<[Constant]>, index: Value) -> Value {
         let ty = table.first().map_or(Type::FLOAT, Constant::ty);
         self.push(Operation::Lookup(table, index), ty)
     }

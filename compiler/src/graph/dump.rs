@@ -19,7 +19,7 @@ impl Display for Function {
         writeln!(f, "{}({})", self.name, inputs.join(", "))?;
         for (value, operation) in self.iter() {
             write!(f, "  {value} = {}", Shown(operation))?;
-            match self.names.get(&value) {
+            match self.names.get(value) {
                 Some(name) => writeln!(f, "  # {name}")?,
                 None => writeln!(f)?,
             }

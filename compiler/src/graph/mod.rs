@@ -10,10 +10,14 @@ mod constant;
 mod dump;
 pub mod evaluate;
 mod interner;
+mod names;
+mod operands;
 pub mod regions;
 
 pub use builder::Builder;
 pub use constant::Constant;
+pub use names::Names;
+pub use operands::Operands;
 
 use crate::intrinsic::Intrinsic;
 use std::sync::Arc;
@@ -140,9 +144,6 @@ pub enum Axis {
     /// Down.
     Y,
 }
-
-/// Any number of operands; up to four lie in the operation itself.
-pub type Operands = smallvec::SmallVec<[Value; 4]>;
 
 /// An operation over earlier values.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -361,7 +362,7 @@ pub struct Function {
     /// Their types; a call's is that of its first output.
     pub types: Vec<Type>,
     /// What the author calls a value: the first name in source order.
-    pub names: std::collections::BTreeMap<Value, String>,
+    pub names: Names,
     /// Where a value was first written.
     pub places: Vec<Place>,
     /// Written as a single expression: callers take its operations over instead of calling it.

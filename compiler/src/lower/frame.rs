@@ -56,7 +56,7 @@ impl<'g> Frame<'g> {
     pub fn of_step(function: &'g Function, regions: Regions) -> Frame<'g> {
         let mut frame = Frame::new(function, regions);
         for (slot, value) in &function.outputs {
-            if function.names.get(value) == Some(&slot.name) {
+            if function.names.get(*value).is_some_and(|name| **name == *slot.name) {
                 frame.next.insert(*value, format!("next_{}", slot.name));
             }
         }
@@ -136,7 +136,7 @@ impl<'g> Frame<'g> {
 
     /// What the author calls a value.
     pub fn author(&self, value: Value) -> Option<&'g str> {
-        let author = self.function.names.get(&value).map(String::as_str);
+        let author = self.function.names.get(value).map(|name| &**name);
         author.filter(|_| !self.next.contains_key(&value))
     }
 
@@ -182,8 +182,8 @@ pub struct Argument {
 /// The names of calls' first outputs, by call.
 fn results(function: &Function) -> FxHashMap<Value, &str> {
     let named = function.names.iter();
-    let outputs = named.filter_map(|(value, name)| match function.operation(*value) {
-        Operation::Output(call, 0) => Some((*call, name.as_str())),
+    let outputs = named.filter_map(|(value, name)| match function.operation(value) {
+        Operation::Output(call, 0) => Some((*call, &**name)),
         _ => None,
     });
     outputs.collect()
@@ -244,7 +244,7 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
             Operation::Lookup(table, index) => {
                 add(*index, if table.len() <= MAX_CHOSEN { table.len() as u32 - 1 } else { 1 });
             }
-            Operation::Extract(vector, _) if !function.names.contains_key(&value) => add(*vector, own),
+            Operation::Extract(vector, _) if !function.names.contains(value) => add(*vector, own),
             _ => operation.for_operands(|v| add(v, 1)),
         }
     }

@@ -138,7 +138,7 @@ impl Lowering<'_> {
     fn run(&self, frame: &Frame, parts: &[Value]) -> Vec<u8> {
         let Operation::Extract(vector, _) = frame.function.operation(parts[0]) else { return Vec::new() };
         let component = |part: &Value| match frame.function.operation(*part) {
-            Operation::Extract(of, i) if of == vector && !frame.function.names.contains_key(part) => Some(*i),
+            Operation::Extract(of, i) if of == vector && !frame.function.names.contains(*part) => Some(*i),
             _ => None,
         };
         parts.iter().map_while(component).collect()

@@ -77,6 +77,6 @@ impl Outlining {
         let outputs: Vec<String> = step.outputs.iter().map(|(slot, _)| slot.name.clone()).collect();
         let accumulators = builder.fold(inner);
         outputs.into_iter().zip(accumulators).for_each(|(name, value)| builder.output(name, value));
-        Operation::Call(self.add(builder.finish()), operands.into())
+        Operation::Call(self.add(builder.finish()), operands.as_slice().into())
     }
 }

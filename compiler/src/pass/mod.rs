@@ -7,7 +7,6 @@ pub mod hoist;
 pub mod inline;
 mod liveness;
 pub mod remove_dead;
-mod taken;
 
 use crate::graph::Graph;
 

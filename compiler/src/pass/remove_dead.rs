@@ -2,9 +2,7 @@
 //! no caller reads, accumulators and captures of folds, functions that nobody calls.
 
 use super::liveness::Liveness;
-use super::taken::Taken;
 use crate::graph::{Function, FunctionId, Graph, Operation, Value};
-use rustc_hash::FxHashMap;
 
 /// Keeps what the entry's outputs need. The entry keeps its inputs: they are the contract.
 pub fn run(graph: Graph) -> Graph {
@@ -13,24 +11,20 @@ pub fn run(graph: Graph) -> Graph {
         inputs.fill(true);
     }
     let entry = graph.functions.len().saturating_sub(1);
-    let mut removing = Removing {
-        places: live.outputs.iter().map(|live| places(live)).collect(),
-        ids: vec![None; graph.functions.len()],
-        live,
-        values: Vec::new(),
-        inner: FxHashMap::default(),
-    };
-    let mut functions = Vec::new();
-    for (i, function) in graph.functions.into_iter().enumerate() {
+    let mut removing =
+        Removing { ids: vec![None; graph.functions.len()], live, outputs: Vec::new(), values: Vec::new() };
+    let mut functions = Vec::with_capacity(graph.functions.len());
+    for (i, mut function) in graph.functions.into_iter().enumerate() {
         if i == entry || removing.live.outputs[i].contains(&true) {
+            removing.function(i, &mut function);
             removing.ids[i] = Some(FunctionId(functions.len() as u32));
-            functions.push(removing.function(i, function));
+            functions.push(function);
         }
     }
     Graph { functions, ..graph }
 }
 
-/// Where each output comes to stand when the dead ones are gone.
+/// Where each of a list comes to stand when the dead ones are gone.
 fn places(live: &[bool]) -> Vec<u32> {
     let mut next = 0;
     let place = |live: &bool| {
@@ -41,84 +35,88 @@ fn places(live: &[bool]) -> Vec<u32> {
     live.iter().map(place).collect()
 }
 
-/// Makes functions without what is dead.
+/// Keeps those of a list that are live.
+fn retain<T>(list: &mut Vec<T>, live: &[bool]) {
+    let mut live = live.iter();
+    list.retain(|_| live.next() == Some(&true));
+}
+
+/// Removes what is dead from functions.
 struct Removing {
     live: Liveness,
-    /// For each function where its outputs come to stand.
-    places: Vec<Vec<u32>>,
+    /// Where a function of the graph went.
     ids: Vec<Option<FunctionId>>,
-    /// The new values of the function being made.
+    /// For each function that is left where its outputs came to stand.
+    outputs: Vec<Vec<u32>>,
+    /// The new values of the function being looked at.
     values: Vec<Value>,
-    /// Whose outputs its calls and folds have.
-    inner: FxHashMap<Value, FunctionId>,
 }
 
 impl Removing {
-    /// What is left is in order and nothing in it folds, so it is moved as it is.
-    fn function(&mut self, place: usize, function: Function) -> Function {
-        let taken = Taken::new(function);
-        let mut new = Function { name: taken.name, ..Function::default() };
-        let mut inputs = Vec::with_capacity(taken.inputs.len());
-        for (slot, live) in taken.inputs.into_iter().zip(&self.live.inputs[place]) {
-            inputs.push(new.inputs.len() as u32);
-            new.inputs.extend(live.then_some(slot));
-        }
+    /// What is left is in order and nothing in it folds, so it moves up as it is.
+    fn function(&mut self, place: usize, function: &mut Function) {
+        let inputs = places(&self.live.inputs[place]);
         self.values.clear();
-        self.inner.clear();
-        for part in taken.values {
-            self.values.push(Value(new.values.len() as u32));
-            if !self.live.is_live(place, part.old) {
+        let mut next = Value(0);
+        for i in 0..function.values.len() {
+            self.values.push(next);
+            let name = function.names.take(Value(i as u32));
+            if !self.live.values[place][i] {
                 continue;
             }
-            if let Some(name) = part.name {
-                new.names.insert(Value(new.values.len() as u32), name);
+            let mut operation = std::mem::replace(&mut function.values[i], Operation::Input(0));
+            self.adapt(&mut operation, &inputs, &function.values);
+            let to = next.0 as usize;
+            function.values[to] = operation;
+            function.types[to] = function.types[i];
+            function.places[to] = function.places[i];
+            if let Some(name) = name {
+                function.names.insert(next, name);
             }
-            let operation = match part.operation {
-                Operation::Input(i) => Operation::Input(inputs.get(i as usize).copied().unwrap_or(0)),
-                operation => self.adapted(part.old, operation),
-            };
-            new.values.push(operation);
-            new.types.push(part.ty);
-            new.places.push(part.place);
+            next.0 += 1;
         }
-        for ((slot, value), live) in taken.outputs.into_iter().zip(&self.live.outputs[place]) {
-            if *live {
-                new.outputs.push((slot, self.values[value.0 as usize]));
-            }
+        let left = next.0 as usize;
+        function.values.truncate(left);
+        function.types.truncate(left);
+        function.places.truncate(left);
+        retain(&mut function.inputs, &self.live.inputs[place]);
+        retain(&mut function.outputs, &self.live.outputs[place]);
+        for (_, value) in &mut function.outputs {
+            *value = self.values[value.0 as usize];
         }
-        new
+        self.outputs.push(places(&self.live.outputs[place]));
     }
 
     fn id(&self, old: FunctionId) -> FunctionId {
         self.ids.get(old.0 as usize).copied().flatten().unwrap_or(old)
     }
 
-    /// An operation over new values, without what is dead.
-    fn adapted(&mut self, old: Value, mut operation: Operation) -> Operation {
-        if let Operation::Output(of, i) = &mut operation
-            && let Some(inner) = self.inner.get(of)
-        {
-            *i = self.places[inner.0 as usize].get(*i as usize).copied().unwrap_or(0);
-        }
+    /// Makes an operation one over new values, `before` it, without what is dead.
+    fn adapt(&self, operation: &mut Operation, inputs: &[u32], before: &[Operation]) {
         operation.replace_operands(|v| self.values[v.0 as usize]);
-        match &mut operation {
+        match operation {
+            Operation::Input(i) => *i = inputs.get(*i as usize).copied().unwrap_or(0),
+            Operation::Output(of, i) => {
+                let of = match &before[of.0 as usize] {
+                    Operation::Call(callee, _) => *callee,
+                    Operation::Fold(fold) => fold.body,
+                    _ => return,
+                };
+                *i = self.outputs[of.0 as usize].get(*i as usize).copied().unwrap_or(0);
+            }
             Operation::Call(callee, arguments) => {
-                self.inner.insert(old, *callee);
                 *arguments = kept(arguments, &self.live.inputs[callee.0 as usize]).collect();
                 *callee = self.id(*callee);
             }
             Operation::Fold(fold) => {
-                self.inner.insert(old, fold.body);
                 let live = &self.live.inputs[fold.body.0 as usize];
-                fold.captures =
-                    kept(&fold.captures, live.get(fold.starts.len() + 1..).unwrap_or(&[])).collect();
-                fold.starts = kept(&fold.starts, live).collect();
+                retain(&mut fold.captures, live.get(fold.starts.len() + 1..).unwrap_or(&[]));
+                retain(&mut fold.starts, live);
                 fold.body = self.id(fold.body);
                 fold.condition = fold.condition.map(|condition| self.id(condition));
             }
             _ => {}
         }
-        operation
     }
 }
 

@@ -4,6 +4,7 @@ use super::demand::{Demand, Requests, of_condition};
 use super::{Analysis, Layout, Variant, marked};
 use crate::graph::{Axis, Builder, Constant, Fold, Function, FunctionId, Level, Operation, Slot, Value};
 use crate::intrinsic::{self, Derivative, Tangents};
+use std::sync::Arc;
 
 /// The tangents of a value in x and y.
 type Pair = [Value; 2];
@@ -66,7 +67,6 @@ impl<'a> Making<'a> {
     /// The function, and for each output the places of its tangents.
     pub fn run(mut self) -> (Function, Vec<Option<[u32; 2]>>) {
         self.take_inputs();
-        let mut names = self.function.names.iter().peekable();
         for (old, operation) in self.function.iter() {
             self.builder.set_place(self.function.places[old.0 as usize]);
             let value = self.copy(old, operation);
@@ -74,8 +74,8 @@ impl<'a> Making<'a> {
             let wanted = marked(&self.demand.values, old);
             let tangents = if wanted { self.differentiate(old, operation) } else { None };
             self.tangents.push(tangents);
-            if let Some((_, name)) = names.next_if(|(named, _)| **named == old) {
-                self.builder.name(value, name);
+            if let Some(name) = self.function.names.get(old) {
+                self.builder.name(value, Arc::clone(name));
                 for (tangent, (_, axis)) in tangents.into_iter().flatten().zip(AXES) {
                     self.builder.name(tangent, format!("{name}_{axis}"));
                 }
@@ -121,7 +121,7 @@ impl<'a> Making<'a> {
                 return self.builder.input(name, slot.ty);
             }
             let value = self.builder.push(Operation::Derivative(input, axis), slot.ty);
-            self.builder.name(value, &name);
+            self.builder.name(value, name);
             value
         })
     }
@@ -178,7 +178,7 @@ impl<'a> Making<'a> {
     fn call(&mut self, old: Value, callee: FunctionId, arguments: &[Value]) -> Operation {
         let found = self.demand.inner.get(&old).and_then(|request| self.find(callee, request));
         let Some((variant, made)) = found else { return Operation::Constant(Constant::floats(&[0.0])) };
-        Operation::Call(made.id, self.with_tangents(arguments, 0, Layout::CALLED, variant).into())
+        Operation::Call(made.id, self.with_tangents(arguments, 0, Layout::CALLED, variant).as_slice().into())
     }
 
     fn fold(&mut self, old: Value, fold: &Fold) -> Operation {

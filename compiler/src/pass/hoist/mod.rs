@@ -23,6 +23,7 @@ use crate::graph::regions::Weights;
 use crate::graph::{Builder, Constant, Fold, Function, FunctionId, Graph, Operation, Slot, Value};
 use rustc_hash::FxHashMap;
 use split::Split;
+use std::sync::Arc;
 
 /// Values that moving may add to a graph: functions that call another twice would double what
 /// comes out of it again and again.
@@ -251,8 +252,8 @@ impl<'a> Rewriting<'a> {
             Some(value) => value,
             None => self.builder.push(new, self.function.ty(old)),
         };
-        if let Some(name) = self.function.names.get(&old) {
-            self.builder.name(value, name);
+        if let Some(name) = self.function.names.get(old) {
+            self.builder.name(value, Arc::clone(name));
         }
         value
     }
@@ -274,7 +275,7 @@ impl<'a> Rewriting<'a> {
         let moved = self.before(callee, &all);
         all.extend(moved);
         self.arguments.insert(old, all.clone());
-        Operation::Call(callee, all.into())
+        Operation::Call(callee, all.as_slice().into())
     }
 
     fn fold(&mut self, fold: &Fold) -> Fold {
@@ -308,8 +309,8 @@ impl<'a> Rewriting<'a> {
                     self.builder.push(copy, before.ty(old))
                 }
             };
-            if let Some(name) = before.names.get(&old) {
-                self.builder.name(value, name);
+            if let Some(name) = before.names.get(old) {
+                self.builder.name(value, Arc::clone(name));
             }
             values.push(value);
         }

@@ -3,6 +3,7 @@
 use super::rate::fixed;
 use crate::graph::regions::{Regions, Weights};
 use crate::graph::{Builder, Function, Operation, Slot, Type, Value};
+use std::sync::Arc;
 
 /// How a function is to be split.
 pub struct Split<'a> {
@@ -100,7 +101,7 @@ impl<'a> Split<'a> {
     }
 
     fn name(&self, value: Value) -> String {
-        self.function.names.get(&value).map_or_else(|| "fixed".to_owned(), String::clone)
+        self.function.names.get(value).map_or("fixed", |name| name).to_owned()
     }
 }
 
@@ -133,8 +134,8 @@ impl<'a> Part<'a> {
                     self.builder.push(copy, self.function.ty(old))
                 }
             };
-            if let Some(name) = self.function.names.get(&old) {
-                self.builder.name(value, name);
+            if let Some(name) = self.function.names.get(old) {
+                self.builder.name(value, Arc::clone(name));
             }
             self.values[old.0 as usize] = value;
         }

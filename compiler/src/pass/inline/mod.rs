@@ -11,8 +11,7 @@ mod plan;
 use crate::graph::{Builder, Constant, Fold, Function, FunctionId, Graph, Operation, Value};
 use plan::{Fate, Plan};
 use rustc_hash::FxHashMap;
-use std::collections::btree_map;
-use std::iter::Peekable;
+use std::sync::Arc;
 
 /// Steps that are written out at most.
 const MOST_STEPS: u32 = 4;
@@ -20,22 +19,29 @@ const MOST_STEPS: u32 = 4;
 const MOST_WRITTEN_OUT: usize = 100_000;
 
 /// Takes single expressions over and writes short folds out, whatever their depth.
-pub fn run(graph: Graph) -> Graph {
+pub fn run(mut graph: Graph) -> Graph {
     let plan = Plan::of(&graph);
     let mut made = Made { ids: vec![None; graph.functions.len()], functions: Vec::new() };
     let mut allowance = MOST_WRITTEN_OUT;
-    for (i, function) in graph.functions.iter().enumerate() {
-        if plan.fates[i] == Fate::Kept {
-            let expanding = Expanding {
-                graph: &graph,
-                made: &made,
-                builder: Builder::with_capacity(function.name.clone(), function.values.len()),
-                allowance: &mut allowance,
-            };
-            let expanded = expanding.run(function);
-            made.ids[i] = Some(FunctionId(made.functions.len() as u32));
-            made.functions.push(expanded);
-        }
+    for (i, fate) in plan.fates.iter().enumerate() {
+        let new = match fate {
+            Fate::Dropped | Fate::TakenOver => continue,
+            Fate::Called if plan.stays(&graph.functions[i]) => {
+                made.adapted(std::mem::take(&mut graph.functions[i]))
+            }
+            Fate::Called | Fate::Folded => {
+                let function = &graph.functions[i];
+                let expanding = Expanding {
+                    graph: &graph,
+                    made: &made,
+                    builder: Builder::with_capacity(function.name.clone(), function.values.len()),
+                    allowance: &mut allowance,
+                };
+                expanding.run(function)
+            }
+        };
+        made.ids[i] = Some(FunctionId(made.functions.len() as u32));
+        made.functions.push(new);
     }
     Graph { functions: made.functions, ..graph }
 }
@@ -50,6 +56,16 @@ struct Made {
 impl Made {
     fn id(&self, old: FunctionId) -> Option<FunctionId> {
         self.ids.get(old.0 as usize).copied().flatten()
+    }
+
+    /// A function that takes nothing over: only what it calls has moved.
+    fn adapted(&self, mut function: Function) -> Function {
+        for operation in &mut function.values {
+            if let Operation::Call(callee, _) = operation {
+                *callee = self.id(*callee).unwrap_or(*callee);
+            }
+        }
+        function
     }
 
     /// What a condition always gives, if that is known.
@@ -67,8 +83,6 @@ struct Copying<'a> {
     function: &'a Function,
     arguments: Vec<Value>,
     next: usize,
-    /// The names of the operations to come.
-    names: Peekable<btree_map::Iter<'a, Value, String>>,
     values: Vec<Value>,
     /// The outputs of calls and folds that were taken over, by the call or fold.
     outputs: FxHashMap<Value, Vec<Value>>,
@@ -93,7 +107,6 @@ impl<'a> Copying<'a> {
             function,
             arguments,
             next: 0,
-            names: function.names.iter().peekable(),
             values: Vec::with_capacity(function.values.len()),
             outputs: FxHashMap::default(),
             steps: None,
@@ -106,11 +119,9 @@ impl<'a> Copying<'a> {
         self.values.get(old.0 as usize).copied().unwrap_or(Value(0))
     }
 
-    /// The name that a value keeps; values are asked for in order.
-    fn name(&mut self, old: Value) -> Option<&'a str> {
-        while self.names.next_if(|(named, _)| **named < old).is_some() {}
-        let (_, name) = self.names.next_if(|(named, _)| **named == old)?;
-        self.named.then_some(name.as_str())
+    /// The name that a value keeps.
+    fn name(&self, old: Value) -> Option<&'a Arc<str>> {
+        self.function.names.get(old).filter(|_| self.named)
     }
 
     /// The value being copied stands for what its outputs will be; only they are read.
@@ -194,7 +205,7 @@ impl<'a> Expanding<'a, '_> {
         };
         top.values.push(value);
         if let Some(name) = top.name(old) {
-            self.builder.name(value, name);
+            self.builder.name(value, Arc::clone(name));
         }
         None
     }

@@ -18,8 +18,10 @@ const MOST_TAKEN_OVER: u64 = 200_000;
 pub enum Fate {
     /// Nothing needs it.
     Dropped,
-    /// It stays a function.
-    Kept,
+    /// It stays a function, called by those that need it.
+    Called,
+    /// It stays the body or the condition of folds.
+    Folded,
     /// All who call it take it over.
     TakenOver,
 }
@@ -58,7 +60,11 @@ impl Plan {
             let cost = need.copies.saturating_mul(function.values.len() as u64);
             let over = function.inline && !need.folded && i != entry;
             let over = over && need.loops + nests[i] <= MOST_NESTED && cost <= allowance;
-            fates[i] = if over { Fate::TakenOver } else { Fate::Kept };
+            fates[i] = match (over, need.folded) {
+                (true, _) => Fate::TakenOver,
+                (false, true) => Fate::Folded,
+                (false, false) => Fate::Called,
+            };
             allowance -= if over { cost } else { 0 };
             let (loops, copies) = match (over, need.folded) {
                 (true, _) => (need.loops, need.copies),
@@ -68,6 +74,15 @@ impl Plan {
             spread(function, loops, copies, &mut needs);
         }
         Plan { fates }
+    }
+
+    /// Whether a function takes nothing over and has no fold that might be written out.
+    pub fn stays(&self, function: &Function) -> bool {
+        function.values.iter().all(|operation| match operation {
+            Operation::Call(callee, _) => self.fates[callee.0 as usize] == Fate::Called,
+            Operation::Fold(_) => false,
+            _ => true,
+        })
     }
 }
 
