@@ -153,17 +153,13 @@ impl<'a> Checker<'a> {
             resources: self.resources,
             views: self.views,
         };
-        let bakes = passes::bakes(&graph, entry);
-        let graphs = bakes.iter().filter_map(|resource| {
-            let made = graph.resources.get(*resource as usize)?;
-            let mut bake = passes::rooted(graph.clone(), made.bake?)?;
-            if let Some(function) = bake.functions.last_mut() {
-                function.name.clone_from(&made.name);
-            }
-            Some(PassGraph { graph: bake, bake: Some(*resource) })
+        let bakes = passes::bakes(&graph, entry).into_iter().filter_map(|id| {
+            let resource = graph.resources.get(id as usize)?;
+            Some(PassGraph { graph: passes::bake(&graph, resource)?, bake: Some(id) })
         });
-        let mut graphs: Vec<PassGraph> = graphs.collect();
-        graph = passes::rooted(graph, entry)?;
+        let mut graphs: Vec<PassGraph> = bakes.collect();
+        // What is called is made before, so nothing after the entry is needed.
+        graph.functions.truncate(entry.0 as usize + 1);
         graphs.push(PassGraph { graph, bake: None });
         Some(graphs)
     }

@@ -197,30 +197,30 @@ pub fn sort(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
 
 /// What calls of a file's nodes read of the file, through any number of further calls.
 pub struct Reach<'a> {
-    /// The nodes by name, with what each takes from outside.
-    nodes: FxHashMap<&'a str, Vec<Free<'a>>>,
+    nodes: FxHashMap<&'a str, Vec<&'a Node>>,
+    /// What the nodes of a name take from outside, of those that were asked for.
+    free: FxHashMap<&'a str, Vec<Free<'a>>>,
 }
 
 impl<'a> Reach<'a> {
     /// Of the nodes of a file.
     pub fn new(nodes: impl Iterator<Item = &'a Node>) -> Reach<'a> {
-        let mut reach = Reach { nodes: FxHashMap::default() };
+        let mut reach = Reach { nodes: FxHashMap::default(), free: FxHashMap::default() };
         for node in nodes {
-            reach.nodes.entry(&node.name.text).or_default().push(Free::of_node(node));
+            reach.nodes.entry(&node.name.text).or_default().push(node);
         }
         reach
     }
 
     /// The names read by nodes that are called by these names.
-    pub fn values(&self, calls: &[&'a str]) -> Vec<&'a str> {
+    pub fn values(&mut self, calls: Vec<&'a str>) -> Vec<&'a str> {
         let mut values = Vec::new();
         let mut seen = FxHashSet::default();
-        let mut queue: Vec<&str> = calls.to_vec();
+        let mut queue = calls;
         while let Some(name) = queue.pop() {
-            if !seen.insert(name) {
-                continue;
-            }
-            for free in self.nodes.get(name).into_iter().flatten() {
+            let Some(nodes) = self.nodes.get(name).filter(|_| seen.insert(name)) else { continue };
+            let free = self.free.entry(name);
+            for free in free.or_insert_with(|| nodes.iter().map(|node| Free::of_node(node)).collect()) {
                 values.extend(&free.values);
                 // A node may be passed by its bare name.
                 queue.extend(free.calls.iter().chain(&free.values));

@@ -137,14 +137,13 @@ impl<'a> Checker<'a> {
             binder.remove(input.name.text.as_str());
         }
         f.bound = binder.keys().copied().collect();
-        let reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
+        let mut reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
         let mut free = order::Free::default();
         let needs = f.steps.iter().map(|step| {
             free.read(step.value);
-            let through = reach.as_ref().map(|reach| {
+            let through = reach.as_mut().map(|reach| {
                 // A node may be passed by its bare name.
-                let callees: Vec<&str> = free.calls.iter().chain(&free.values).copied().collect();
-                reach.values(&callees)
+                reach.values(free.calls.iter().chain(&free.values).copied().collect())
             });
             let names = free.values.iter().chain(through.iter().flatten());
             names.filter_map(|name| binder.get(name).copied()).collect()
