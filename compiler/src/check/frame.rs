@@ -43,8 +43,8 @@ pub struct Frame<'a> {
     pub(super) steps: Vec<Step<'a>>,
     pub(super) order: Vec<usize>,
     pub(super) next: usize,
-    /// The names that the steps bind.
-    pub(super) bound: FxHashSet<&'a str>,
+    /// The names that the steps bind, and which step does.
+    pub(super) bound: FxHashMap<&'a str, usize>,
     /// Where names stand that were bound before: the first binding holds.
     pub(super) repeated: FxHashSet<u32>,
     /// Outputs whose declared type is wrong, and names that are bound twice: what they get is not
@@ -74,14 +74,14 @@ impl<'a> Frame<'a> {
             key: None,
             node: None,
             module: 0,
-            dims: Vec::new(),
+            dims: Dims::new(),
             builder: Builder::default(),
             scopes: vec![FxHashMap::default()],
             layers: Vec::new(),
             base: 0,
             steps: Vec::new(),
             order: Vec::new(),
-            bound: FxHashSet::default(),
+            bound: FxHashMap::default(),
             repeated: FxHashSet::default(),
             doubtful: FxHashSet::default(),
             unknown: Reported::default(),

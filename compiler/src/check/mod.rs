@@ -245,6 +245,7 @@ impl<'a> Checker<'a> {
         f.module = key.module;
         f.parent = parent;
         f.dims = node.dims.iter().map(|d| d.text.as_str()).zip(key.dims.iter().copied()).collect();
+        f.scopes[0].reserve(node.inputs.len() + node.body.statements.len());
         for (input, argument) in node.inputs.iter().zip(&key.arguments) {
             let wire = self.input_wire(&mut f, input, argument);
             f.scopes[0].insert(&input.name.text, wire);
