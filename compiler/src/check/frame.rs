@@ -2,6 +2,7 @@
 
 use super::layer::Layer;
 use super::plan::Reported;
+use super::prepared::Prepared;
 use super::types::Dims;
 use super::wire::{Key, Wire};
 use crate::diagnostic::Place;
@@ -60,6 +61,8 @@ pub struct Frame<'a> {
     pub(super) progress: FxHashMap<*const Postfix, (usize, Wire)>,
     /// Expressions are evaluated for other names than the step's own: a fold's body, a default.
     pub(super) foreign: u32,
+    /// There is nothing to do: the library has made it.
+    pub(super) prepared: Option<&'a Prepared>,
     /// Index of the frame that waits for this one.
     pub(super) parent: Option<usize>,
     /// The call in a user's file that leads here.
@@ -90,6 +93,7 @@ impl<'a> Frame<'a> {
             failed: false,
             progress: FxHashMap::default(),
             foreign: 0,
+            prepared: None,
             parent: None,
             caller: None,
             current: "",

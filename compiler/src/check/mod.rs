@@ -23,6 +23,7 @@ mod operator;
 pub mod order;
 mod passes;
 mod plan;
+mod prepared;
 mod range;
 mod render;
 mod special;
@@ -31,7 +32,9 @@ mod types;
 mod view;
 mod wire;
 
+pub use prepared::{Prepared, prepare};
 pub use texture::textures;
+pub use wire::Key;
 
 use crate::diagnostic::{Diagnostic, Place, limits, names, types as type_errors};
 use crate::graph::{
@@ -46,7 +49,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span};
 use types::Declared;
-use wire::{ArgumentKey, Key, NodeWire, ResourceWire, Wire};
+use wire::{ArgumentKey, NodeWire, ResourceWire, Wire};
 
 /// What a made node is.
 #[derive(Clone, Copy)]
@@ -193,6 +196,10 @@ impl<'a> Checker<'a> {
             if top.key.as_ref().is_some_and(|key| self.made.contains_key(key)) {
                 continue;
             }
+            if let Some(prepared) = top.prepared {
+                self.take_over(prepared);
+                continue;
+            }
             if self.step(&mut top) {
                 self.close(top);
                 continue;
@@ -221,6 +228,9 @@ impl<'a> Checker<'a> {
                 return None;
             }
             up = frame.parent;
+        }
+        if let Some(prepared) = self.ahead(key) {
+            return Some(Frame { key: Some(key.clone()), prepared: Some(prepared), ..Frame::empty() });
         }
         self.started += 1;
         if self.started > limits::MAX_NODES {
