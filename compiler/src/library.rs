@@ -1,5 +1,7 @@
-//! The standard library: `std/*.tex`, parsed once and shared by every compilation.
+//! The standard library: `std/*.tex`, parsed once, its nodes made as most programs call them, and
+//! shared by every compilation.
 
+use crate::check::{self, Key, Prepared};
 use crate::intrinsic::Intrinsic;
 use crate::module::{Module, Source, Sources};
 use crate::resource::KINDS;
@@ -36,6 +38,8 @@ pub struct Library {
     callables: FxHashMap<String, Vec<Callable>>,
     /// Signatures of the intrinsics, by row, then of the constructors.
     signatures: Vec<Signature>,
+    /// Nodes as most programs call them.
+    prepared: FxHashMap<Key, Prepared>,
 }
 
 impl Library {
@@ -62,11 +66,13 @@ impl Library {
             modules: Vec::new(),
             callables: FxHashMap::default(),
             signatures: Vec::new(),
+            prepared: FxHashMap::default(),
         };
         for (path, text) in files {
             library.add_file(path, text)?;
         }
         library.add_tables()?;
+        library.prepared = check::prepare(&library);
         Ok(library)
     }
 
@@ -122,6 +128,11 @@ impl Library {
     /// Its modules.
     pub fn modules(&self) -> &[Module] {
         &self.modules
+    }
+
+    /// The node that was made for this key, if it was.
+    pub(crate) fn prepared(&self, key: &Key) -> Option<&Prepared> {
+        self.prepared.get(key)
     }
 
     /// What a name may mean, in order of preference.

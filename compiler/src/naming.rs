@@ -118,6 +118,17 @@ enum Kind {
     Stored,
 }
 
+impl Kind {
+    /// What stands before a declaration that is not to be written; none where `before` ends in none.
+    fn undeclared(self, before: &str) -> Option<&str> {
+        match self {
+            Kind::Plain => None,
+            Kind::Alias => before.strip_suffix("let "),
+            Kind::Stored => before.strip_suffix("var "),
+        }
+    }
+}
+
 impl Names {
     /// A placeholder for a final name.
     pub fn placeholder(&mut self, name: String) -> String {
@@ -136,8 +147,15 @@ impl Names {
     }
 
     fn push(&mut self, text: String, kind: Kind) -> String {
+        let number = self.0.len();
         self.0.push(Name { text, kind });
-        format!("z{}z", self.0.len() - 1)
+        let mut placeholder = String::with_capacity(8);
+        placeholder.push('z');
+        for place in (0..=number.checked_ilog10().unwrap_or(0)).rev() {
+            placeholder.push(char::from(b'0' + (number / 10_usize.pow(place) % 10) as u8));
+        }
+        placeholder.push('z');
+        placeholder
     }
 
     fn get(&self, token: &str) -> Option<&Name> {
@@ -145,52 +163,39 @@ impl Names {
         self.0.get(number.parse::<usize>().ok()?)
     }
 
-    /// What follows the line that begins with `token` and goes on with `after`, if it declares
-    /// what is declared elsewhere.
-    fn behind_declaration<'t>(&self, token: &str, after: &'t str) -> Option<&'t str> {
-        let elsewhere = match token {
-            "let" => Kind::Alias,
-            "var" => Kind::Stored,
-            _ => return None,
-        };
-        let declared = after.trim_start().split([' ', ':']).next()?;
-        self.get(declared).filter(|name| name.kind == elsewhere)?;
-        after.split_once('\n').map(|(_, behind)| behind)
-    }
-
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
     /// nth function, which the writer names itself.
-    pub fn apply(&self, text: &str, results: &[rustc_hash::FxHashMap<u32, String>]) -> String {
+    pub fn apply(&self, text: &str, results: &[FxHashMap<u32, String>]) -> String {
         let mut out = String::with_capacity(text.len() * 3 / 2);
-        let mut function = 0;
+        let mut functions = 0_usize;
         let mut stored = FxHashSet::default();
         // What stands before `done` is in `out`.
         let mut done = 0;
         let mut at = 0;
-        while let Some(token) = next_word(text, at) {
+        while let Some(token) = next_name(text, at) {
             at = token.end;
-            let (start, word) = (token.start, &text[token]);
-            function += usize::from(word == "fn");
-            if let Some(behind) = self.behind_declaration(word, &text[at..]) {
-                out.push_str(&text[done..start]);
-                out.truncate(out.trim_end_matches(' ').len());
+            let (before, word) = (&text[done..token.start], &text[token]);
+            let Some(name) = self.get(word) else {
+                let number = word.strip_prefix("_e").and_then(|number| number.parse::<u32>().ok());
+                let result = number.and_then(|number| results.get(functions.wrapping_sub(1))?.get(&number));
+                if let Some(result) = result {
+                    out.extend([before, result]);
+                    done = at;
+                }
+                continue;
+            };
+            functions += usize::from(before.ends_with("fn "));
+            if let Some(before) = name.kind.undeclared(before)
+                && let Some((_, behind)) = text[at..].split_once('\n')
+            {
+                out.push_str(before.trim_end_matches(' '));
                 // The writer parts variables from the rest by an empty line.
                 let behind = if out.ends_with("{\n") { behind.trim_start_matches('\n') } else { behind };
                 at = text.len() - behind.len();
-                done = at;
-                continue;
+            } else {
+                let is_first = name.kind == Kind::Stored && stored.insert(word);
+                out.extend([before, if is_first { "var " } else { "" }, &name.text]);
             }
-            let result = || {
-                let number = word.strip_prefix("_e")?.parse::<u32>().ok()?;
-                results.get(function.wrapping_sub(1))?.get(&number).map(String::as_str)
-            };
-            let name = self.get(word);
-            let Some(text_of) = name.map(|name| name.text.as_str()).or_else(result) else { continue };
-            out.push_str(&text[done..start]);
-            if name.is_some_and(|name| name.kind == Kind::Stored) && stored.insert(word) {
-                out.push_str("var ");
-            }
-            out.push_str(text_of);
             done = at;
         }
         out.push_str(&text[done..]);
@@ -198,13 +203,13 @@ impl Names {
     }
 }
 
-/// The next run of letters, digits and `_` that begins with no digit.
-fn next_word(text: &str, from: usize) -> Option<std::ops::Range<usize>> {
-    let bytes = text.as_bytes().get(from..)?;
-    let start = bytes.iter().position(|b| b.is_ascii_alphabetic() || *b == b'_')?;
-    let length = bytes[start..].iter().position(|b| !b.is_ascii_alphanumeric() && *b != b'_');
-    let end = length.map_or(bytes.len(), |length| start + length);
-    Some(from + start..from + end)
+/// The next word from `from` on that begins as placeholders or the writer's names of results do.
+fn next_name(text: &str, from: usize) -> Option<std::ops::Range<usize>> {
+    let bytes = text.as_bytes();
+    let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
+    let begins = |start: &usize| bytes[..*start].last().is_none_or(|before| !is_part(before));
+    let start = memchr::memchr2_iter(b'z', b'_', &bytes[from..]).map(|at| from + at).find(begins)?;
+    Some(start..start + bytes[start..].iter().take_while(|byte| is_part(byte)).count())
 }
 
 #[cfg(test)]

@@ -161,7 +161,7 @@ impl Making {
         self.grow(&mut body, operations, folds);
         for head in &heads {
             let next = self.pick(&body);
-            body.b.name(next, head);
+            body.b.name(next, head.as_str());
             body.b.output(head, next);
         }
         let body = self.add(body.b.finish());

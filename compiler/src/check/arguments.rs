@@ -7,6 +7,8 @@ use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, limits, names, nodes, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
 use crate::resource::KINDS;
+use smallvec::{SmallVec, smallvec};
+use std::rc::Rc;
 use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name, TypeKind};
 
 /// An argument, evaluated.
@@ -33,6 +35,12 @@ impl<'a> Given<'a> {
     }
 }
 
+/// The arguments of a call: few in most cases.
+pub type Arguments<'a> = SmallVec<[Given<'a>; 4]>;
+
+/// The argument of each input; none where the default stands.
+type Slots<'g, 'a> = SmallVec<[Option<&'g Given<'a>>; 8]>;
+
 /// The head of what is called.
 #[derive(Clone, Copy)]
 pub struct Head<'s> {
@@ -54,9 +62,9 @@ pub struct Bound<'a> {
     /// The dimension variables.
     pub dims: Dims<'a>,
     /// One wire for each input, of its declared type.
-    pub wires: Vec<Wire>,
+    pub wires: SmallVec<[Wire; 8]>,
     /// Where each argument stands; the call's own place for defaults.
-    pub places: Vec<Place>,
+    pub places: SmallVec<[Place; 8]>,
 }
 
 impl<'a> Checker<'a> {
@@ -66,7 +74,7 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         head: Head<'a>,
         dim: Option<&Dim>,
-        given: Vec<Given<'a>>,
+        given: &[Given<'a>],
         place: Place,
     ) -> Option<Bound<'a>> {
         let slots = self.place_arguments(f, head, given, place)?;
@@ -74,13 +82,12 @@ impl<'a> Checker<'a> {
             return None;
         }
         let dims = self.bind_dims(f, head, dim, &slots, place)?;
-        let count = head.inputs.len();
-        let mut bound = Bound { dims, wires: Vec::with_capacity(count), places: Vec::with_capacity(count) };
+        let mut bound = Bound { dims, wires: SmallVec::new(), places: SmallVec::new() };
         let mut complete = true;
         let said = self.diagnostics.len();
         for (input, slot) in head.inputs.iter().zip(&slots) {
-            let at = slot.as_ref().map_or(place, |given| given.place);
-            let wire = self.argument(f, head, input, slot.clone(), &bound, place);
+            let at = slot.map_or(place, |given| given.place);
+            let wire = self.argument(f, head, input, *slot, &bound, place);
             complete &= !matches!(wire, Wire::Unknown);
             bound.wires.push(wire);
             bound.places.push(at);
@@ -92,15 +99,15 @@ impl<'a> Checker<'a> {
     }
 
     /// Says so where the arguments fit once two of them are exchanged.
-    fn exchanged(&mut self, f: &Frame<'a>, head: Head<'a>, slots: &[Option<Given<'a>>], said: usize) {
+    fn exchanged(&mut self, f: &Frame<'a>, head: Head<'a>, slots: &[Option<&Given<'a>>], said: usize) {
         let fits = |slot: usize, from: usize| match (head.inputs.get(slot), slots.get(from)) {
-            (Some(input), Some(Some(given))) => accepts(f, input, &Given { name: None, ..given.clone() }),
+            (Some(input), Some(Some(given))) => accepts(f, input, &Given { name: None, ..(*given).clone() }),
             _ => true,
         };
         let given: Vec<usize> = (0..slots.len()).filter(|i| slots[*i].is_some()).collect();
         // A name says where an argument goes, and words and lambdas show what they are for.
         let moves = |slot: &&usize| {
-            slots[**slot].as_ref().is_some_and(|given| {
+            slots[**slot].is_some_and(|given| {
                 let known = matches!(given.wire, Wire::Value(_) | Wire::Resource(_) | Wire::Matrix(_));
                 known && given.name.is_none() && !matches!(head.inputs[**slot].ty.kind, TypeKind::Node { .. })
             })
@@ -121,7 +128,7 @@ impl<'a> Checker<'a> {
         };
         let mut mending = pairs.filter(mends);
         let (Some((a, b)), None) = (mending.next(), mending.next()) else { return };
-        if let (Some(first), Some(second)) = (&slots[a], &slots[b]) {
+        if let (Some(first), Some(second)) = (slots[a], slots[b]) {
             // What is wrong with the second is the same slip.
             let names = [a, b].map(|slot| head.inputs[slot].name.text.as_str());
             let error = self.diagnostics.get_mut(said);
@@ -131,16 +138,16 @@ impl<'a> Checker<'a> {
     }
 
     /// Sorts arguments into the inputs' slots.
-    fn place_arguments(
+    fn place_arguments<'g>(
         &mut self,
         f: &mut Frame<'a>,
         head: Head<'a>,
-        given: Vec<Given<'a>>,
+        given: &'g [Given<'a>],
         place: Place,
-    ) -> Option<Vec<Option<Given<'a>>>> {
-        let mut slots: Vec<Option<Given<'a>>> = vec![None; head.inputs.len()];
+    ) -> Option<Slots<'g, 'a>> {
+        let mut slots: Slots<'g, 'a> = smallvec![None; head.inputs.len()];
         let mut fine = true;
-        for (i, argument) in given.into_iter().enumerate() {
+        for (i, argument) in given.iter().enumerate() {
             let position = match argument.name {
                 None => Some(i).filter(|i| *i < slots.len()),
                 Some(name) => head.inputs.iter().position(|input| input.name.text == name.text),
@@ -148,7 +155,7 @@ impl<'a> Checker<'a> {
             let error = match (position, argument.name) {
                 (Some(i), name) if slots[i].is_some() => {
                     let at = name.map_or(argument.place, |name| self.place(f, name.span));
-                    let first = slots[i].as_ref().map_or(at, |first| first.place);
+                    let first = slots[i].map_or(at, |first| first.place);
                     sentences::argument_twice(at, head.name, &head.inputs[i].name.text, first)
                 }
                 (Some(i), _) => {
@@ -186,7 +193,7 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         head: Head<'a>,
         dim: Option<&Dim>,
-        slots: &[Option<Given<'a>>],
+        slots: &[Option<&Given<'a>>],
         place: Place,
     ) -> Option<Dims<'a>> {
         let mut dims = Dims::new();
@@ -208,7 +215,7 @@ impl<'a> Checker<'a> {
             let mut from = place;
             for (input, slot) in head.inputs.iter().zip(slots) {
                 let Some(given) =
-                    slot.as_ref().filter(|_| types::dimension_variable(&input.ty) == Some(&variable.text))
+                    slot.filter(|_| types::dimension_variable(&input.ty) == Some(&variable.text))
                 else {
                     continue;
                 };
@@ -235,7 +242,7 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         head: Head<'a>,
         input: &'a Input,
-        slot: Option<Given<'a>>,
+        slot: Option<&Given<'a>>,
         bound: &Bound<'a>,
         place: Place,
     ) -> Wire {
@@ -265,7 +272,7 @@ impl<'a> Checker<'a> {
     ) -> Wire {
         if let ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Bool(_) = default.kind {
             let wire = self.expr(f, default);
-            return self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
+            return self.coerce(f, input, declared, &Given { name: None, wire, place, expr: Some(default) });
         }
         if f.defaults.iter().any(|outer| std::ptr::eq(*outer, default)) {
             return self.report(f, names::recursion(place, head.name));
@@ -285,7 +292,7 @@ impl<'a> Checker<'a> {
         f.foreign += 1;
         f.defaults.push(default);
         let wire = self.expr(f, default);
-        let wire = self.coerce(f, input, declared, Given { name: None, wire, place, expr: Some(default) });
+        let wire = self.coerce(f, input, declared, &Given { name: None, wire, place, expr: Some(default) });
         f.defaults.pop();
         f.foreign -= 1;
         (f.module, f.dims, f.scopes) = (module, dims, scopes);
@@ -294,29 +301,29 @@ impl<'a> Checker<'a> {
     }
 
     /// A wire as one of a declared type.
-    pub fn coerce(&mut self, f: &mut Frame<'a>, input: &str, declared: &Declared, given: Given<'a>) -> Wire {
+    pub fn coerce(&mut self, f: &mut Frame<'a>, input: &str, declared: &Declared, given: &Given<'a>) -> Wire {
         if let Declared::Node(ty) = declared {
             return match given.wire {
                 Wire::Unknown => Wire::Unknown,
-                _ => self.node_argument(f, input, ty, &given),
+                _ => self.node_argument(f, input, ty, given),
             };
         }
         let word = given.word();
-        let Given { wire, place, .. } = given;
-        match (declared, wire) {
+        let place = given.place;
+        match (declared, &given.wire) {
             (_, Wire::Unknown) => Wire::Unknown,
             (_, Wire::Lambda) => self.report(f, nodes::lambda_as_value(place)),
             (Declared::Matrix(size), wire) => {
-                self.coerce_matrix(f, &wire, *size, place).map_or(Wire::Unknown, Wire::Matrix)
+                self.coerce_matrix(f, wire, *size, place).map_or(Wire::Unknown, Wire::Matrix)
             }
             (Declared::Vector(scalar, width), wire) => self
-                .coerce_named(f, &wire, (*scalar, *width), place, Some(input))
+                .coerce_named(f, wire, (*scalar, *width), place, Some(input))
                 .map_or(Wire::Unknown, Wire::Value),
             (Declared::Choice(words), Wire::Text(_)) => {
                 self.report(f, sentences::quoted_choice(place, input, words))
             }
             (Declared::Choice(words), wire) => {
-                let written = match &wire {
+                let written = match wire {
                     Wire::Word(word, _) => Some(word.as_str()),
                     _ => word,
                 };
@@ -329,15 +336,15 @@ impl<'a> Checker<'a> {
                 }
             }
             (Declared::Resource(kind), Wire::Resource(resource)) if resource.kind == *kind => {
-                Wire::Resource(resource)
+                Wire::Resource(Rc::clone(resource))
             }
             (Declared::Resource(_), Wire::None) => Wire::None,
-            (Declared::Text, Wire::Text(text)) => Wire::Text(text),
-            (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire,
-            (_, Wire::Word(word, at)) => self.unknown_value(f, &word, at),
+            (Declared::Text, Wire::Text(text)) => Wire::Text(text.clone()),
+            (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire.clone(),
+            (_, Wire::Word(word, at)) => self.unknown_value(f, word, *at),
             (_, Wire::Callables(nodes)) => self.report(f, names::node_as_value(place, &nodes.name)),
             (declared, wire) => {
-                let found = types::describe(&wire, |v| f.builder.ty(v));
+                let found = types::describe(wire, |v| f.builder.ty(v));
                 let wanted = match declared {
                     Declared::Resource(kind) => format!("`{}`", KINDS[*kind].name),
                     Declared::Text => "a string".to_owned(),

@@ -1,20 +1,21 @@
 //! Calls: which node, intrinsic or constructor a name means, and what calling it gives.
 
-use super::arguments::{Bound, Given, Head};
+use super::arguments::{Arguments, Bound, Given, Head};
 use super::types;
 use super::view::view_of;
 use super::wire::{ArgumentKey, ImportedNodes, Key, Wire};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, arguments as sentences, names, nodes};
 use crate::graph::{Constant, FunctionId, Operation, Value};
-use crate::library::Callable;
+use crate::library::{Callable, Library};
 use crate::resource::KINDS;
 use smallvec::SmallVec;
+use std::borrow::Cow;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Argument, Call, Dim, Expr, ExprKind, Field, Input, Postfix, Span, TypeKind};
 
-/// What a name before a bracket may mean: few in most cases.
-pub type Candidates = SmallVec<[Callable; 4]>;
+/// What a name before a bracket may mean: in most cases what the library calls so.
+pub type Candidates<'a> = Cow<'a, [Callable]>;
 
 /// What is called, as written.
 #[derive(Clone, Copy)]
@@ -35,10 +36,11 @@ impl<'a> Checker<'a> {
     /// `name<n>(arguments)`
     pub(super) fn call(&mut self, f: &mut Frame<'a>, call: &'a Call, span: Span) -> Wire {
         let place = self.place(f, span);
-        let given = self.given(f, &call.arguments);
+        let mut given = Arguments::new();
+        self.evaluate(f, &call.arguments, &mut given);
         if let Some(Wire::Node(node)) = f.lookup(&call.name.text) {
             let callee = self.callee(f, call);
-            return self.call_passed(f, &node, callee, given, place);
+            return self.call_passed(f, &node, callee, &given, place);
         }
         let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty()
@@ -51,7 +53,7 @@ impl<'a> Checker<'a> {
             return self.no_callable(f, callee, &given);
         }
         let callee = self.callee(f, call);
-        self.call_one_of(f, &candidates, callee, given, place)
+        self.call_one_of(f, &candidates, callee, &given, place)
     }
 
     /// `base.name<n>(arguments)`: the base is the first argument.
@@ -64,22 +66,22 @@ impl<'a> Checker<'a> {
         span: Span,
     ) -> Wire {
         let place = self.place(f, span);
-        let arguments = self.given(f, &call.arguments);
-        if let Some(view) = view_of(&base)
-            && let Some(wire) = self.view_method(f, view, call, &arguments, place)
+        let mut given = Arguments::new();
+        given.push(Given { name: None, wire: base, place: base_place, expr: None });
+        self.evaluate(f, &call.arguments, &mut given);
+        if let Some(view) = view_of(&given[0].wire)
+            && let Some(wire) = self.view_method(f, view, call, &given[1..], place)
         {
             return wire;
         }
-        if matches!(base, Wire::Unknown) {
+        if matches!(given[0].wire, Wire::Unknown) {
             // What is called on something unknown is unknown too.
             return Wire::Unknown;
         }
         let sampled = matches!(call.name.text.as_str(), "sample" | "texel" | "level");
-        let receiver = Given { name: None, wire: base, place: base_place, expr: None };
-        let given: Vec<Given<'a>> = std::iter::once(receiver).chain(arguments).collect();
         let callee = self.callee(f, call);
         if let Some(Wire::Node(node)) = f.lookup(&call.name.text) {
-            return self.call_passed(f, &node, callee, given, place);
+            return self.call_passed(f, &node, callee, &given, place);
         }
         let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty() {
@@ -92,7 +94,7 @@ impl<'a> Checker<'a> {
                 self.no_callable(f, callee, &given)
             };
         }
-        self.call_one_of(f, &candidates, callee, given, place)
+        self.call_one_of(f, &candidates, callee, &given, place)
     }
 
     /// `sample` of something that has no texels of its own.
@@ -121,8 +123,9 @@ impl<'a> Checker<'a> {
         span: Span,
     ) -> Wire {
         let place = self.place(f, span);
-        let given = self.given(f, &call.arguments);
-        let candidates = Candidates::from_slice(self.own_callables(module, &call.name.text));
+        let mut given = Arguments::new();
+        self.evaluate(f, &call.arguments, &mut given);
+        let candidates = self.own_callables(module, &call.name.text).to_vec();
         if candidates.is_empty() {
             let at = self.place(f, call.name.span);
             if self.globals[module].contains_key(&call.name.text) {
@@ -133,19 +136,16 @@ impl<'a> Checker<'a> {
                 .report(f, crate::diagnostic::imports::no_such_item(at, alias, &call.name.text, near));
         }
         let callee = self.callee(f, call);
-        self.call_one_of(f, &candidates, callee, given, place)
+        self.call_one_of(f, &candidates, callee, &given, place)
     }
 
-    fn given(&mut self, f: &mut Frame<'a>, arguments: &'a [Argument]) -> Vec<Given<'a>> {
-        arguments
-            .iter()
-            .map(|argument| Given {
-                name: argument.name.as_ref(),
-                wire: self.argument_wire(f, &argument.value),
-                place: self.place(f, argument.value.span),
-                expr: Some(&argument.value),
-            })
-            .collect()
+    /// Adds what arguments are worth.
+    fn evaluate(&mut self, f: &mut Frame<'a>, arguments: &'a [Argument], given: &mut Arguments<'a>) {
+        for Argument { name, value } in arguments {
+            let wire = self.argument_wire(f, value);
+            let place = self.place(f, value.span);
+            given.push(Given { name: name.as_ref(), wire, place, expr: Some(value) });
+        }
     }
 
     /// An argument, which unlike other expressions may be a lambda, or a node of another file.
@@ -168,19 +168,17 @@ impl<'a> Checker<'a> {
     }
 
     /// What a name may mean in a file, nearest first.
-    pub(super) fn callables_of(&self, module: usize, name: &str) -> Candidates {
-        let mut found = Candidates::new();
-        if module >= self.library.modules().len() {
-            found.extend_from_slice(self.own_callables(module, name));
-            for import in self.modules[module].imports.iter().filter(|import| import.alias.is_none()) {
-                found.extend_from_slice(self.own_callables(import.module, name));
-            }
-            if name.starts_with('_') {
-                return found;
-            }
+    pub(super) fn callables_of(&self, module: usize, name: &str) -> Candidates<'a> {
+        let is_users = module >= self.library.modules().len();
+        let library: &'a Library = self.library;
+        let library = if is_users && name.starts_with('_') { &[] } else { library.callables(name) };
+        let joined = self.modules[module].imports.iter().filter(|import| import.alias.is_none());
+        let modules = std::iter::once(module).chain(joined.map(|import| import.module));
+        let mut nearer = modules.filter(|_| is_users).flat_map(|module| self.own_callables(module, name));
+        match nearer.next() {
+            Some(nearest) => [nearest].into_iter().chain(nearer).chain(library).copied().collect(),
+            None => Cow::Borrowed(library),
         }
-        found.extend_from_slice(self.library.callables(name));
-        found
     }
 
     pub(super) fn own_callables(&self, module: usize, name: &str) -> &[Callable] {
@@ -188,7 +186,7 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn head(&self, callable: Callable) -> Option<Head<'a>> {
-        let library: &'a crate::library::Library = self.library;
+        let library: &'a Library = self.library;
         match callable {
             Callable::Node(module, item) => self.node(module, item).map(|node| Head {
                 name: &node.name.text,
@@ -218,18 +216,23 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         candidates: &[Callable],
         callee: Callee<'a>,
-        given: Vec<Given<'a>>,
+        given: &[Given<'a>],
         place: Place,
     ) -> Wire {
         if given.iter().any(|given| matches!(given.wire, Wire::Unknown)) {
             f.failed |= f.waiting.is_empty();
-            self.words(f, candidates, &given);
+            self.words(f, candidates, given);
             return Wire::Unknown;
+        }
+        if let [callable] = candidates
+            && let Some(head) = self.head(*callable)
+        {
+            return self.apply(f, *callable, head, callee.dim, given, place);
         }
         let heads: SmallVec<[(Callable, Head<'a>); 4]> =
             candidates.iter().filter_map(|callable| Some((*callable, self.head(*callable)?))).collect();
         let fits =
-            |head: &Head<'a>, n: usize| head.inputs.iter().zip(&given).take(n).all(|(i, g)| accepts(f, i, g));
+            |head: &Head<'a>, n: usize| head.inputs.iter().zip(given).take(n).all(|(i, g)| accepts(f, i, g));
         // The nearest that takes the first argument; of those equally near, one that takes all.
         let nearest =
             heads.iter().find(|(_, head)| fits(head, 1)).map(|(callable, _)| self.distance(f, *callable));
@@ -241,7 +244,7 @@ impl<'a> Checker<'a> {
         match (chosen, heads.as_slice()) {
             (Some((callable, head)), _) => self.apply(f, callable, head, callee.dim, given, place),
             (None, [(callable, head)]) => self.apply(f, *callable, *head, callee.dim, given, place),
-            (None, _) => self.no_receiver(f, &heads, callee, &given, place),
+            (None, _) => self.no_receiver(f, &heads, callee, given, place),
         }
     }
 
@@ -301,7 +304,7 @@ impl<'a> Checker<'a> {
         callable: Callable,
         head: Head<'a>,
         dim: Option<&Dim>,
-        given: Vec<Given<'a>>,
+        given: &[Given<'a>],
         place: Place,
     ) -> Wire {
         let Some(bound) = self.bind_arguments(f, head, dim, given, place) else {

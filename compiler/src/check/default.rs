@@ -52,7 +52,7 @@ impl<'a> Checker<'a> {
         // A wrong type is reported at the head.
         if let Ok(declared) = types::resolve(&input.ty, &f.dims, self.modules[f.module].file) {
             let given = super::arguments::Given { name: None, wire, place, expr: input.default.as_ref() };
-            self.coerce(f, &input.name.text, &declared, given);
+            self.coerce(f, &input.name.text, &declared, &given);
         }
         let wire = self.open_wire(f, input);
         f.scopes[0].insert(&input.name.text, wire);

@@ -50,7 +50,7 @@ impl<'a> Checker<'a> {
         if let Some(wire) = f.lookup(name) {
             return wire;
         }
-        if f.bound.contains(name) {
+        if f.bound.contains_key(name) {
             // Bound in this body but not made: part of a ring, or wrong; both are reported.
             f.failed = true;
             return Wire::Unknown;

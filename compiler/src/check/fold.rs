@@ -206,17 +206,12 @@ impl<'a> Checker<'a> {
             binder.extend(order::names_of(statement).map(|name| (name, i)));
         }
         // An accumulator read in the body is its previous value, so only wires make an order.
-        let needs: Vec<Vec<usize>> = body
-            .statements
-            .iter()
-            .map(|s| {
-                Free::of(order::value_of(s))
-                    .values
-                    .iter()
-                    .filter_map(|name| binder.get(name).copied())
-                    .collect()
-            })
-            .collect();
+        let mut free = Free::default();
+        let mut needs = order::Needs::default();
+        for statement in &body.statements {
+            free.read(order::value_of(statement));
+            needs.push(free.values.iter().filter_map(|name| binder.get(name).copied()));
+        }
         let (order, rings) = order::sort(&needs);
         for ring in &rings {
             let names: Vec<&str> =
@@ -243,8 +238,8 @@ impl<'a> Checker<'a> {
         for name in &assigned {
             self.accumulates(f, fold, name);
         }
-        self.distinct(f, bound.into_iter());
-        self.distinct(f, assigned.into_iter());
+        self.distinct(f, &bound);
+        self.distinct(f, &assigned);
     }
 
     /// Reports an assignment to something that is no accumulator.

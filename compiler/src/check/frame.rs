@@ -2,6 +2,7 @@
 
 use super::layer::Layer;
 use super::plan::Reported;
+use super::prepared::Prepared;
 use super::types::Dims;
 use super::wire::{Key, Wire};
 use crate::diagnostic::Place;
@@ -43,8 +44,8 @@ pub struct Frame<'a> {
     pub(super) steps: Vec<Step<'a>>,
     pub(super) order: Vec<usize>,
     pub(super) next: usize,
-    /// The names that the steps bind.
-    pub(super) bound: FxHashSet<&'a str>,
+    /// The names that the steps bind, and which step does.
+    pub(super) bound: FxHashMap<&'a str, usize>,
     /// Where names stand that were bound before: the first binding holds.
     pub(super) repeated: FxHashSet<u32>,
     /// Outputs whose declared type is wrong, and names that are bound twice: what they get is not
@@ -62,6 +63,8 @@ pub struct Frame<'a> {
     pub(super) foreign: u32,
     /// The defaults that are being evaluated, each for the one before.
     pub(super) defaults: Vec<&'a Expr>,
+    /// There is nothing to do: the library has made it.
+    pub(super) prepared: Option<&'a Prepared>,
     /// Index of the frame that waits for this one.
     pub(super) parent: Option<usize>,
     /// The call in a user's file that leads here.
@@ -76,14 +79,14 @@ impl<'a> Frame<'a> {
             key: None,
             node: None,
             module: 0,
-            dims: Vec::new(),
+            dims: Dims::new(),
             builder: Builder::default(),
             scopes: vec![FxHashMap::default()],
             layers: Vec::new(),
             base: 0,
             steps: Vec::new(),
             order: Vec::new(),
-            bound: FxHashSet::default(),
+            bound: FxHashMap::default(),
             repeated: FxHashSet::default(),
             doubtful: FxHashSet::default(),
             unknown: Reported::default(),
@@ -93,6 +96,7 @@ impl<'a> Frame<'a> {
             progress: FxHashMap::default(),
             foreign: 0,
             defaults: Vec::new(),
+            prepared: None,
             parent: None,
             caller: None,
             current: "",

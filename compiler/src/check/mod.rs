@@ -23,6 +23,7 @@ mod operator;
 pub mod order;
 mod passes;
 mod plan;
+mod prepared;
 mod range;
 mod render;
 mod special;
@@ -31,7 +32,9 @@ mod types;
 mod view;
 mod wire;
 
+pub use prepared::{Prepared, prepare};
 pub use texture::textures;
+pub use wire::Key;
 
 use crate::diagnostic::{Diagnostic, Place, limits, names, types as type_errors};
 use crate::graph::{
@@ -46,7 +49,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span};
 use types::Declared;
-use wire::{ArgumentKey, Key, NodeWire, ResourceWire, Wire};
+use wire::{ArgumentKey, NodeWire, ResourceWire, Wire};
 
 /// What a made node is.
 #[derive(Clone, Copy)]
@@ -153,17 +156,13 @@ impl<'a> Checker<'a> {
             resources: self.resources,
             views: self.views,
         };
-        let bakes = passes::bakes(&graph, entry);
-        let graphs = bakes.iter().filter_map(|resource| {
-            let made = graph.resources.get(*resource as usize)?;
-            let mut bake = passes::rooted(graph.clone(), made.bake?)?;
-            if let Some(function) = bake.functions.last_mut() {
-                function.name.clone_from(&made.name);
-            }
-            Some(PassGraph { graph: bake, bake: Some(*resource) })
+        let bakes = passes::bakes(&graph, entry).into_iter().filter_map(|id| {
+            let resource = graph.resources.get(id as usize)?;
+            Some(PassGraph { graph: passes::bake(&graph, resource)?, bake: Some(id) })
         });
-        let mut graphs: Vec<PassGraph> = graphs.collect();
-        graph = passes::rooted(graph, entry)?;
+        let mut graphs: Vec<PassGraph> = bakes.collect();
+        // What is called is made before, so nothing after the entry is needed.
+        graph.functions.truncate(entry.0 as usize + 1);
         graphs.push(PassGraph { graph, bake: None });
         Some(graphs)
     }
@@ -197,6 +196,10 @@ impl<'a> Checker<'a> {
             if top.key.as_ref().is_some_and(|key| self.made.contains_key(key)) {
                 continue;
             }
+            if let Some(prepared) = top.prepared {
+                self.take_over(prepared);
+                continue;
+            }
             if self.step(&mut top) {
                 self.close(top);
                 continue;
@@ -226,6 +229,9 @@ impl<'a> Checker<'a> {
             }
             up = frame.parent;
         }
+        if let Some(prepared) = self.ahead(key) {
+            return Some(Frame { key: Some(key.clone()), prepared: Some(prepared), ..Frame::empty() });
+        }
         self.started += 1;
         if self.started > limits::MAX_NODES {
             if !self.full {
@@ -249,6 +255,7 @@ impl<'a> Checker<'a> {
         f.module = key.module;
         f.parent = parent;
         f.dims = node.dims.iter().map(|d| d.text.as_str()).zip(key.dims.iter().copied()).collect();
+        f.scopes[0].reserve(node.inputs.len() + node.body.statements.len());
         for (input, argument) in node.inputs.iter().zip(&key.arguments) {
             let wire = self.input_wire(&mut f, input, argument);
             f.scopes[0].insert(&input.name.text, wire);

@@ -1,7 +1,7 @@
 //! Nodes as arguments: a lambda, a named node, or a node that was passed in itself, becomes a
 //! function of the inputs that its type names and of what it reads from where it was written.
 
-use super::arguments::Given;
+use super::arguments::{Arguments, Given};
 use super::call::{Callee, Candidates};
 use super::types::{Declared, NodeType};
 use super::wire::{NodeWire, Wire};
@@ -14,7 +14,7 @@ use texgraph_grammar::syntax::{Expr, ExprKind, Name, Postfix};
 /// What is to become a node.
 enum Source<'a> {
     Lambda(&'a [Name], &'a Expr),
-    Named(Callee<'a>, Candidates),
+    Named(Callee<'a>, Candidates<'a>),
     Passed(Rc<NodeWire>),
 }
 
@@ -49,10 +49,10 @@ impl<'a> Checker<'a> {
                     let wanted: Vec<&str> = ty.inputs.iter().map(|(name, _)| name.as_str()).collect();
                     return self.report(f, nodes::lambda_inputs(given.place, input, &wanted, names.len()));
                 }
-                self.distinct(f, names.iter());
+                self.distinct(f, &names.iter().collect::<Vec<_>>());
                 self.closure(f, input, ty, given.place, |checker, f, arguments| {
                     for (name, argument) in names.iter().zip(arguments) {
-                        f.scopes[f.base].insert(&name.text, argument.wire);
+                        f.scopes[f.base].insert(&name.text, argument.wire.clone());
                     }
                     checker.expr(f, body)
                 })
@@ -71,7 +71,7 @@ impl<'a> Checker<'a> {
                     _ => None,
                 });
                 let callee = Callee { name: name.unwrap_or_default(), place, dim: None };
-                Some(Source::Named(callee, Candidates::from_slice(&nodes.callables)))
+                Some(Source::Named(callee, nodes.callables.clone().into()))
             }
             // A name before a bracket is looked up among nodes only, so here it is too.
             (_, Some(ExprKind::Name(name))) if !self.callables_of(f.module, name).is_empty() => {
@@ -100,7 +100,7 @@ impl<'a> Checker<'a> {
         input: &str,
         ty: &Rc<NodeType>,
         place: Place,
-        make: impl FnOnce(&mut Self, &mut Frame<'a>, Vec<Given<'a>>) -> Wire,
+        make: impl FnOnce(&mut Self, &mut Frame<'a>, &[Given<'a>]) -> Wire,
     ) -> Wire {
         f.enter(input);
         let arguments = ty.inputs.iter().map(|(name, declared)| Given {
@@ -109,8 +109,8 @@ impl<'a> Checker<'a> {
             place,
             expr: None,
         });
-        let arguments = arguments.collect();
-        let wire = make(self, f, arguments);
+        let arguments: Arguments<'a> = arguments.collect();
+        let wire = make(self, f, &arguments);
         let given = match wire {
             Wire::Unknown => None,
             _ if f.waiting.is_empty() => self.parts(f, &ty.output, wire, place),
@@ -189,7 +189,7 @@ impl<'a> Checker<'a> {
         f: &mut Frame<'a>,
         node: &NodeWire,
         callee: Callee<'a>,
-        given: Vec<Given<'a>>,
+        given: &[Given<'a>],
         place: Place,
     ) -> Wire {
         let inputs: Vec<&str> = node.ty.inputs.iter().map(|(name, _)| name.as_str()).collect();
@@ -201,7 +201,7 @@ impl<'a> Checker<'a> {
             if matches!(given.wire, Wire::Unknown) {
                 return Wire::Unknown;
             }
-            match self.parts(f, declared, given.wire, given.place) {
+            match self.parts(f, declared, given.wire.clone(), given.place) {
                 Some(values) => arguments.extend(values),
                 None => return Wire::Unknown,
             }
@@ -214,17 +214,17 @@ impl<'a> Checker<'a> {
     }
 
     /// One argument for each input, by position or by name.
-    fn passed_arguments(
+    fn passed_arguments<'g>(
         &mut self,
         f: &mut Frame<'a>,
         inputs: &[&str],
         callee: Callee<'a>,
-        given: Vec<Given<'a>>,
+        given: &'g [Given<'a>],
         place: Place,
-    ) -> Option<Vec<Given<'a>>> {
+    ) -> Option<Vec<&'g Given<'a>>> {
         use crate::diagnostic::arguments as sentences;
-        let mut slots: Vec<Option<Given<'a>>> = vec![None; inputs.len()];
-        for (i, argument) in given.into_iter().enumerate() {
+        let mut slots: Vec<Option<&Given<'a>>> = vec![None; inputs.len()];
+        for (i, argument) in given.iter().enumerate() {
             let position = match argument.name {
                 None => Some(i),
                 Some(name) => inputs.iter().position(|input| *input == name.text),

@@ -1,7 +1,7 @@
 //! Which wire needs which: free names of expressions, and statements in an order that works.
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use texgraph_grammar::syntax::{Body, Expr, ExprKind, Fold, Node, Pattern, Postfix, Span, Statement};
+use texgraph_grammar::syntax::{Body, Expr, ExprKind, Fold, Name, Node, Pattern, Postfix, Span, Statement};
 
 /// The names that an expression takes from outside.
 #[derive(Default, Debug)]
@@ -130,13 +130,17 @@ impl<'a> Free<'a> {
 
 /// The names a statement binds.
 pub fn names_of(statement: &Statement) -> impl Iterator<Item = &str> {
-    let names = match statement {
+    bound(statement).iter().map(|name| name.text.as_str())
+}
+
+/// The names a statement binds, with their places.
+pub fn bound(statement: &Statement) -> &[Name] {
+    match statement {
         Statement::Let { pattern: Pattern::Name(name), .. } | Statement::Assign { name, .. } => {
             std::slice::from_ref(name)
         }
         Statement::Let { pattern: Pattern::Record(names, _), .. } => names,
-    };
-    names.iter().map(|name| name.text.as_str())
+    }
 }
 
 /// The expression of a statement.
@@ -146,28 +150,53 @@ pub fn value_of(statement: &Statement) -> &Expr {
     }
 }
 
+/// For each step the steps whose names it reads.
+#[derive(Default)]
+pub struct Needs {
+    steps: Vec<usize>,
+    /// Where those of each step end.
+    ends: Vec<usize>,
+}
+
+impl Needs {
+    /// Adds those of the next step.
+    pub fn push(&mut self, steps: impl Iterator<Item = usize>) {
+        self.steps.extend(steps);
+        self.ends.push(self.steps.len());
+    }
+
+    fn of(&self, step: usize) -> &[usize] {
+        let start = step.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.steps[start..self.ends[step]]
+    }
+}
+
 /// Steps so that each comes after those it needs, in source order where that is free; and the
 /// rings of steps that need each other, no step in two of them. A step of a ring comes before one
 /// that it needs.
-pub fn sort(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
+pub fn sort(needs: &Needs) -> (Vec<usize>, Vec<Vec<usize>>) {
+    let steps = 0..needs.ends.len();
+    if steps.clone().all(|step| needs.of(step).iter().all(|needed| *needed < step)) {
+        return (steps.collect(), Vec::new());
+    }
     #[derive(Clone, Copy, PartialEq)]
     enum State {
         New,
         Open,
         Done,
     }
-    let mut state = vec![State::New; needs.len()];
-    let mut order = Vec::with_capacity(needs.len());
+    let mut state = vec![State::New; steps.len()];
+    let mut order = Vec::with_capacity(steps.len());
     let mut rings = Vec::new();
-    let mut in_ring = vec![false; needs.len()];
+    let mut in_ring = vec![false; steps.len()];
     let mut stack = Vec::new();
-    for root in 0..needs.len() {
+    for root in steps {
         if state[root] == State::New {
             stack.push((root, 0));
             state[root] = State::Open;
         }
         while let Some((step, next)) = stack.last_mut() {
-            let Some(&needed) = needs[*step].get(*next) else {
+            let Some(&needed) = needs.of(*step).get(*next) else {
                 state[*step] = State::Done;
                 order.push(*step);
                 stack.pop();
@@ -197,30 +226,30 @@ pub fn sort(needs: &[Vec<usize>]) -> (Vec<usize>, Vec<Vec<usize>>) {
 
 /// What calls of a file's nodes read of the file, through any number of further calls.
 pub struct Reach<'a> {
-    /// The nodes by name, with what each takes from outside.
-    nodes: FxHashMap<&'a str, Vec<Free<'a>>>,
+    nodes: FxHashMap<&'a str, Vec<&'a Node>>,
+    /// What the nodes of a name take from outside, of those that were asked for.
+    free: FxHashMap<&'a str, Vec<Free<'a>>>,
 }
 
 impl<'a> Reach<'a> {
     /// Of the nodes of a file.
     pub fn new(nodes: impl Iterator<Item = &'a Node>) -> Reach<'a> {
-        let mut reach = Reach { nodes: FxHashMap::default() };
+        let mut reach = Reach { nodes: FxHashMap::default(), free: FxHashMap::default() };
         for node in nodes {
-            reach.nodes.entry(&node.name.text).or_default().push(Free::of_node(node));
+            reach.nodes.entry(&node.name.text).or_default().push(node);
         }
         reach
     }
 
     /// The names read by nodes that are called by these names.
-    pub fn values(&self, calls: &[&'a str]) -> Vec<&'a str> {
+    pub fn values(&mut self, calls: Vec<&'a str>) -> Vec<&'a str> {
         let mut values = Vec::new();
         let mut seen = FxHashSet::default();
-        let mut queue: Vec<&str> = calls.to_vec();
+        let mut queue = calls;
         while let Some(name) = queue.pop() {
-            if !seen.insert(name) {
-                continue;
-            }
-            for free in self.nodes.get(name).into_iter().flatten() {
+            let Some(nodes) = self.nodes.get(name).filter(|_| seen.insert(name)) else { continue };
+            let free = self.free.entry(name);
+            for free in free.or_insert_with(|| nodes.iter().map(|node| Free::of_node(node)).collect()) {
                 values.extend(&free.values);
                 // A node may be passed by its bare name.
                 queue.extend(free.calls.iter().chain(&free.values));

@@ -1,6 +1,7 @@
 //! Which bakes a texture reads, and the graph of each.
 
 use crate::graph::{FunctionId, Graph, Operation};
+use crate::resource::Resource;
 
 /// The resources that have to be baked for a function, each after those that its own bake reads.
 pub fn bakes(graph: &Graph, entry: FunctionId) -> Vec<u32> {
@@ -41,10 +42,10 @@ fn mark(graph: &Graph, entry: FunctionId, needed: &mut [bool]) {
     }
 }
 
-/// The graph with a function as its entry, without those made after it.
-pub fn rooted(mut graph: Graph, entry: FunctionId) -> Option<Graph> {
-    let function = graph.functions.get(entry.0 as usize)?.clone();
-    graph.functions.truncate(entry.0 as usize + 1);
-    graph.functions.push(function);
-    Some(graph)
+/// The graph of a bake: its function, which gets the name of its resource, after all that it calls.
+pub fn bake(graph: &Graph, resource: &Resource) -> Option<Graph> {
+    let mut functions = graph.functions.get(..=resource.bake?.0 as usize)?.to_vec();
+    functions.last_mut()?.name.clone_from(&resource.name);
+    let Graph { params, resources, views, .. } = graph;
+    Some(Graph { functions, params: params.clone(), resources: resources.clone(), views: views.clone() })
 }

@@ -4,7 +4,7 @@
 use super::wire::Wire;
 use super::{Checker, Frame, Step, Target, globals, order};
 use crate::diagnostic::names;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 use texgraph_grammar::syntax::{Name, Node, Pattern, Span, Statement};
 
 /// Names of a function that were reported as unknown: each is reported once.
@@ -41,16 +41,17 @@ impl<'a> Checker<'a> {
     /// The steps of a node.
     pub(super) fn plan_node(&mut self, f: &mut Frame<'a>, node: &'a Node) {
         f.builder.set_inline(node.body.statements.len() == 1 && node.outputs.len() == 1);
-        self.distinct(f, node.inputs.iter().map(|i| &i.name).chain(node.outputs.iter().map(|o| &o.name)));
+        let inputs = node.inputs.iter().map(|input| &input.name);
+        let head: Vec<&'a Name> = inputs.chain(node.outputs.iter().map(|output| &output.name)).collect();
+        self.distinct(f, &head);
+        f.steps.reserve(node.body.statements.len());
+        let mut bound = Vec::with_capacity(node.inputs.len() + node.body.statements.len());
+        bound.extend(node.inputs.iter().map(|input| &input.name));
         let is_input = |name: &Name| node.inputs.iter().any(|input| input.name.text == name.text);
-        let mut bound: Vec<&'a Name> = node.inputs.iter().map(|i| &i.name).collect();
         for statement in &node.body.statements {
             match statement {
                 Statement::Let { pattern, value, .. } => {
-                    match pattern {
-                        Pattern::Name(name) => bound.push(name),
-                        Pattern::Record(names, _) => bound.extend(names),
-                    }
+                    bound.extend(order::bound(statement));
                     f.steps.push(Step { target: Target::Let(pattern), value });
                 }
                 Statement::Assign { name, value } => {
@@ -64,7 +65,7 @@ impl<'a> Checker<'a> {
                 }
             }
         }
-        self.distinct(f, bound.into_iter());
+        self.distinct(f, &bound);
         self.outputs_assigned(f, node);
         self.sort(f);
     }
@@ -107,8 +108,8 @@ impl<'a> Checker<'a> {
     }
 
     /// Reports each name that stands twice; the first one holds.
-    pub(super) fn distinct(&mut self, f: &mut Frame<'a>, bound: impl Iterator<Item = &'a Name>) {
-        let mut seen: FxHashMap<&str, &Name> = FxHashMap::default();
+    pub(super) fn distinct(&mut self, f: &mut Frame<'a>, bound: &[&'a Name]) {
+        let mut seen: FxHashMap<&str, &Name> = with_room(bound.len());
         for name in bound {
             let first = *seen.entry(&name.text).or_insert(name);
             if first.span != name.span {
@@ -127,7 +128,7 @@ impl<'a> Checker<'a> {
     /// Puts the steps into an order that works. What stands in a ring is reported and comes in
     /// any order: what else is wrong with it is found too.
     pub(super) fn sort(&mut self, f: &mut Frame<'a>) {
-        let mut binder: FxHashMap<&str, usize> = FxHashMap::default();
+        let mut binder: FxHashMap<&str, usize> = with_room(f.steps.len());
         for (i, step) in f.steps.iter().enumerate() {
             for name in step.names() {
                 binder.entry(name).or_insert(i);
@@ -136,20 +137,19 @@ impl<'a> Checker<'a> {
         for input in f.node.iter().flat_map(|node| &node.inputs) {
             binder.remove(input.name.text.as_str());
         }
-        f.bound = binder.keys().copied().collect();
-        let reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
+        let mut reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
         let mut free = order::Free::default();
-        let needs = f.steps.iter().map(|step| {
+        let mut needs = order::Needs::default();
+        for step in &f.steps {
             free.read(step.value);
-            let through = reach.as_ref().map(|reach| {
+            let through = reach.as_mut().map(|reach| {
                 // A node may be passed by its bare name.
-                let callees: Vec<&str> = free.calls.iter().chain(&free.values).copied().collect();
-                reach.values(&callees)
+                reach.values(free.calls.iter().chain(&free.values).copied().collect())
             });
             let names = free.values.iter().chain(through.iter().flatten());
-            names.filter_map(|name| binder.get(name).copied()).collect()
-        });
-        let needs: Vec<Vec<usize>> = needs.collect();
+            needs.push(names.filter_map(|name| binder.get(name).copied()));
+        }
+        f.bound = binder;
         let (order, rings) = order::sort(&needs);
         f.order = order;
         for ring in rings {
@@ -174,6 +174,11 @@ impl<'a> Checker<'a> {
         let error = names::cycle(self.place(f, span), &names);
         self.report(f, error);
     }
+}
+
+/// An empty map for that many.
+fn with_room<K, V>(entries: usize) -> FxHashMap<K, V> {
+    FxHashMap::with_capacity_and_hasher(entries, FxBuildHasher)
 }
 
 fn is_output(node: &Node, name: &Name) -> bool {

@@ -11,6 +11,7 @@ use crate::graph::{Builder, Constant, Scalar, Type, Value};
 use crate::input::INPUTS;
 use crate::intrinsic::{FLOOR_INT, LESS, MULTIPLY};
 use crate::library::Callable;
+use smallvec::SmallVec;
 use texgraph_grammar::syntax::{Input, Node};
 
 /// Cells along the unit square, where a node takes ints.
@@ -28,7 +29,7 @@ impl<'a> Checker<'a> {
         let mut f = Frame::empty();
         f.module = module;
         f.builder = Builder::new(name_of(node, wire.as_deref()));
-        let key = Key { module, item: usize::MAX, dims: Vec::new(), arguments: Vec::new(), wire };
+        let key = Key { module, item: usize::MAX, dims: SmallVec::new(), arguments: SmallVec::new(), wire };
         f.key = Some(key.clone());
         f.steps.push(Step { target: Target::Render(item), value: super::order::value_of(statement) });
         f.order.push(0);
@@ -56,7 +57,7 @@ impl<'a> Checker<'a> {
             };
             given.push(Given { name: Some(&input.name), wire, place, expr: None });
         }
-        let Some(bound) = self.bind_arguments(f, head, None, given, place) else { return Wire::Unknown };
+        let Some(bound) = self.bind_arguments(f, head, None, &given, place) else { return Wire::Unknown };
         let wire = f.key.as_ref().and_then(|key| key.wire.clone());
         self.call_node(f, (module, item, wire), bound, place)
     }

@@ -4,6 +4,7 @@ use super::wire::Wire;
 use crate::diagnostic::{Diagnostic, Place, types};
 use crate::graph::{Scalar, Type};
 use crate::resource::{KINDS, LATER};
+use smallvec::SmallVec;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{self, Dim, TypeKind};
 
@@ -42,7 +43,7 @@ pub struct NodeType {
 }
 
 /// Dimension variables with their values.
-pub type Dims<'a> = Vec<(&'a str, u8)>;
+pub type Dims<'a> = SmallVec<[(&'a str, u8); 2]>;
 
 /// The scalar and fixed width of a named vector type; width `None` for the generic forms.
 fn vector(name: &str) -> Option<(Scalar, Option<u8>)> {

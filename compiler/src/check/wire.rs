@@ -4,6 +4,7 @@ use super::types::NodeType;
 use crate::diagnostic::Place;
 use crate::graph::{Constant, FunctionId, Type, Value};
 use crate::library::Callable;
+use smallvec::SmallVec;
 use std::rc::Rc;
 
 /// What an expression gives.
@@ -97,9 +98,9 @@ pub struct Key {
     /// Index of the item.
     pub item: usize,
     /// The dimension variables, in order.
-    pub dims: Vec<u8>,
+    pub dims: SmallVec<[u8; 4]>,
     /// The inputs, in order.
-    pub arguments: Vec<ArgumentKey>,
+    pub arguments: SmallVec<[ArgumentKey; 8]>,
     /// A wire of the body that it gives in place of its outputs.
     pub wire: Option<String>,
 }

@@ -4,7 +4,7 @@ use super::formula::Formula;
 use super::scope::{Scope, is_resource, type_name};
 use super::text::{self, excerpt};
 use super::{Block, Diagram, End, Kind, Port, Rate, Wire};
-use crate::check::order::{Free, names_of, sort, value_of};
+use crate::check::order::{Free, Needs, names_of, sort, value_of};
 use crate::input::is_per_draw;
 use crate::library::Library;
 use crate::module::{Modules, Sources};
@@ -139,10 +139,10 @@ impl<'a> Maker<'a> {
         }
         let reads: Vec<Vec<&str>> = body.statements.iter().map(|s| Free::of(value_of(s)).values).collect();
         let is_read: FxHashSet<&str> = reads.iter().flatten().copied().collect();
-        let needs: Vec<Vec<usize>> = reads
-            .iter()
-            .map(|names| names.iter().filter_map(|name| binds.get(name).copied()).collect())
-            .collect();
+        let mut needs = Needs::default();
+        for names in &reads {
+            needs.push(names.iter().filter_map(|name| binds.get(name).copied()));
+        }
         let mut given = FxHashMap::default();
         for step in sort(&needs).0 {
             match &body.statements[step] {
