@@ -83,7 +83,7 @@ impl Library {
         let module = self.modules.len();
         for (item, declared) in tree.items.iter().enumerate() {
             if let ItemKind::Node(node) = &declared.kind {
-                let named = self.callables.entry(node.name.text.clone()).or_default();
+                let named = self.callables.entry(node.name.text.to_string()).or_default();
                 named.push(Callable::Node(module, item));
             }
         }

@@ -4,6 +4,8 @@
 //! prefixes, `else if`) are flat lists, so the tree is never deeper than the brackets of the text,
 //! and those are bounded (see [`crate::MAX_NESTING`]).
 
+use smol_str::SmolStr;
+
 /// A half-open range of byte offsets in one file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Span {
@@ -34,7 +36,7 @@ impl Span {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Name {
     /// The name itself.
-    pub text: String,
+    pub text: SmolStr,
     /// Where it stands.
     pub span: Span,
 }
@@ -282,7 +284,7 @@ pub enum ExprKind {
     /// `#rgb`, `#rrggbb`, `#rrggbbaa`: red, green, blue, alpha as written (sRGB-encoded, straight).
     Color([u8; 4]),
     /// A name on its own.
-    Name(String),
+    Name(SmolStr),
     /// `(inner)`: kept for the formatter.
     Paren(Box<Expr>),
     /// `name<n>(arguments)`

@@ -32,7 +32,7 @@ fn show(expr: &Expr) -> String {
         ExprKind::Bool(value) => value.to_string(),
         ExprKind::Text(value) => format!("{value:?}"),
         ExprKind::Color(value) => format!("{value:?}"),
-        ExprKind::Name(name) => name.clone(),
+        ExprKind::Name(name) => name.to_string(),
         ExprKind::Paren(inner) => format!("paren({})", show(inner)),
         ExprKind::Call(call) => format!(
             "{}{}({})",
@@ -111,7 +111,9 @@ fn show_type(ty: &Type) -> String {
         format!("({})", fields.join(", "))
     };
     match &ty.kind {
-        TypeKind::Named { name, dim } => name.text.clone() + &dim.as_ref().map_or(String::new(), show_dim),
+        TypeKind::Named { name, dim } => {
+            name.text.to_string() + &dim.as_ref().map_or(String::new(), show_dim)
+        }
         TypeKind::Choice(names) => names.iter().map(|name| name.text.as_str()).collect::<Vec<_>>().join("|"),
         TypeKind::Node { inputs, output } => {
             format!("node{} -> {}", fields(inputs), show_type(output))
@@ -249,7 +251,7 @@ fn nodes() {
     let node =
         node("node n<n, m,>(a: vec<n>, b: int = a.x + 1,) -> (v: vec<n>, w: float,) { v = a w = 1.0 }");
     let names = |names: &[texgraph_grammar::syntax::Name]| {
-        names.iter().map(|name| name.text.clone()).collect::<Vec<_>>().join(" ")
+        names.iter().map(|name| name.text.to_string()).collect::<Vec<_>>().join(" ")
     };
     assert_eq!(names(&node.dims), "n m");
     assert_eq!(node.inputs.len(), 2);
@@ -281,7 +283,7 @@ fn statements() {
         .statements
         .iter()
         .map(|statement| match statement {
-            Statement::Let { pattern: Pattern::Name(name), .. } => name.text.clone(),
+            Statement::Let { pattern: Pattern::Name(name), .. } => name.text.to_string(),
             Statement::Let { pattern: Pattern::Record(names, _), .. } => format!("{}", names.len()),
             Statement::Assign { name, value } => format!("{} = {}", name.text, show(value)),
         })

@@ -266,7 +266,7 @@ fn intrinsic_call(library: &Library, intrinsic: Intrinsic) -> Option<Callable> {
 fn node_call(library: &Library, module: usize, item: usize) -> Option<Callable> {
     let module = library.modules().get(module)?;
     let ItemKind::Node(node) = &module.tree.items.get(item)?.kind else { return None };
-    let outputs = node.outputs.iter().map(|field| Some((field.name.text.clone(), value(&field.ty)?)));
+    let outputs = node.outputs.iter().map(|field| Some((field.name.text.to_string(), value(&field.ty)?)));
     head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?)
 }
 
@@ -280,7 +280,7 @@ fn head(
 ) -> Option<Callable> {
     let inputs = inputs.iter().map(|input| {
         let takes = takes(&input.ty)?;
-        Some(Input { name: input.name.text.clone(), takes, optional: input.default.is_some() })
+        Some(Input { name: input.name.text.to_string(), takes, optional: input.default.is_some() })
     });
     Some(Callable {
         text: name.to_owned(),

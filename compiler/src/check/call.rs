@@ -128,7 +128,7 @@ impl<'a> Checker<'a> {
         let candidates = self.own_callables(module, &call.name.text).to_vec();
         if candidates.is_empty() {
             let at = self.place(f, call.name.span);
-            if self.globals[module].contains_key(&call.name.text) {
+            if self.globals[module].contains_key(call.name.text.as_str()) {
                 return self.report(f, names::value_as_node(at, &format!("{alias}.{}", call.name.text)));
             }
             let near = self.near_item(module, &call.name.text);
@@ -156,7 +156,7 @@ impl<'a> Checker<'a> {
         if let ExprKind::Postfix { base, links } = &expr.kind
             && let [Postfix::Field(name)] = links.as_slice()
             && let Some(module) = self.alias_of(f, base)
-            && !self.globals[module].contains_key(&name.text)
+            && !self.globals[module].contains_key(name.text.as_str())
         {
             let callables = self.own_callables(module, &name.text);
             if let (ExprKind::Name(alias), false) = (&base.kind, callables.is_empty()) {
@@ -363,7 +363,7 @@ impl<'a> Checker<'a> {
         match outputs {
             [only] => wire(only),
             _ => {
-                let record = outputs.iter().map(|output| (output.name.text.clone(), wire(output)));
+                let record = outputs.iter().map(|output| (output.name.text.to_string(), wire(output)));
                 Wire::Record(Rc::new(record.collect()))
             }
         }

@@ -26,7 +26,7 @@ impl<'a> Checker<'a> {
         let mut values = Vec::new();
         for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
             match argument(f, input, wire, *at) {
-                Ok(argument) => values.push((input.name.text.clone(), *at, argument)),
+                Ok(argument) => values.push((input.name.text.to_string(), *at, argument)),
                 Err(diagnostic) => return self.report(f, diagnostic),
             }
         }

@@ -167,7 +167,7 @@ impl<'a> Checker<'a> {
     }
 
     fn imported_value(&mut self, f: &mut Frame<'a>, alias: &str, module: usize, name: &Name) -> Wire {
-        if let Some(global) = self.globals[module].get(&name.text).cloned() {
+        if let Some(global) = self.globals[module].get(name.text.as_str()).cloned() {
             return self.global_wire(f, global);
         }
         let place = self.place(f, name.span);

@@ -60,7 +60,7 @@ impl<'a> Checker<'a> {
         let made =
             graph::Fold { body: inner, condition, starts, steps: steps.steps, most: steps.most, captures };
         let Some(results) = self.fold_results(f, made, place) else { return Wire::Unknown };
-        let names = fold.accumulators.iter().map(|(name, _)| name.text.clone());
+        let names = fold.accumulators.iter().map(|(name, _)| name.text.to_string());
         let mut record: Vec<(String, Wire)> = names.zip(results.into_iter().map(Wire::Value)).collect();
         if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
     }
@@ -87,7 +87,8 @@ impl<'a> Checker<'a> {
         f.enter("step");
         let accumulators = accumulators(f, fold, &types);
         let plain = steps.are_places(f);
-        let name = if plain { fold.variable.text.clone() } else { format!("{}_step", fold.variable.text) };
+        let name =
+            if plain { fold.variable.text.to_string() } else { format!("{}_step", fold.variable.text) };
         let step = f.builder.input(name, Type::INT);
         let at = steps.place_of(f, step);
         f.builder.name(at, fold.variable.text.as_str());

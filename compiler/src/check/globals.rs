@@ -284,7 +284,7 @@ impl<'a> Checker<'a> {
         let is_doubtful = f.doubtful.contains(name.text.as_str());
         let global = if is_doubtful { Global::Unknown } else { global };
         if !f.repeated.contains(&name.span.start) {
-            self.globals[f.module].insert(name.text.clone(), global.clone());
+            self.globals[f.module].insert(name.text.to_string(), global.clone());
         }
         let wire = self.global_wire(f, global);
         self.bind(f, name, wire);

@@ -105,7 +105,7 @@ impl<'a> Checker<'a> {
 pub fn name_of(node: &Node, wire: Option<&str>) -> String {
     match wire {
         Some(wire) => format!("{}_{wire}", node.name.text),
-        None => node.name.text.clone(),
+        None => node.name.text.to_string(),
     }
 }
 

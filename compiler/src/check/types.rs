@@ -119,10 +119,10 @@ pub fn resolve(ty: &syntax::Type, dims: &Dims<'_>, file: u32) -> Result<Declared
             Some((scalar, None)) => {
                 Ok(Declared::Vector(scalar, width_of(&name.text, dim.as_ref(), dims, place)?))
             }
-            Some(_) => Err(types::unknown_type(place, &show(ty), Some(name.text.clone()))),
+            Some(_) => Err(types::unknown_type(place, &show(ty), Some(name.text.to_string()))),
             None => resolve_other(&name.text, place),
         },
-        TypeKind::Choice(words) => Ok(Declared::Choice(words.iter().map(|w| w.text.clone()).collect())),
+        TypeKind::Choice(words) => Ok(Declared::Choice(words.iter().map(|w| w.text.to_string()).collect())),
         TypeKind::Node { inputs, output } => {
             let inputs = fields(inputs, dims, file)?;
             let output = part(output, dims, file)?;
@@ -138,7 +138,7 @@ fn fields(
     dims: &Dims<'_>,
     file: u32,
 ) -> Result<Vec<(String, Declared)>, Diagnostic> {
-    fields.iter().map(|field| Ok((field.name.text.clone(), part(&field.ty, dims, file)?))).collect()
+    fields.iter().map(|field| Ok((field.name.text.to_string(), part(&field.ty, dims, file)?))).collect()
 }
 
 /// What may stand inside a node's type: numbers, matrices, and records of them.
@@ -193,7 +193,7 @@ pub fn width_of(generic: &str, dim: Option<&Dim>, dims: &Dims<'_>, place: Place)
 /// A type as the author would write it.
 pub fn show(ty: &syntax::Type) -> String {
     match &ty.kind {
-        TypeKind::Named { name, dim: None } => name.text.clone(),
+        TypeKind::Named { name, dim: None } => name.text.to_string(),
         TypeKind::Named { name, dim: Some(Dim::Name(n)) } => format!("{}<{}>", name.text, n.text),
         TypeKind::Named { name, dim: Some(Dim::Number(n, _)) } => format!("{}<{n}>", name.text),
         TypeKind::Choice(words) => words.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(" | "),

@@ -165,5 +165,5 @@ fn port_name(head: &Head<'_>, position: usize) -> String {
 fn place_of(head: &Head<'_>, name: Option<&Name>, position: usize) -> (usize, String) {
     let Some(name) = name else { return (position, port_name(head, position)) };
     let known = head.inputs.as_ref().and_then(|inputs| inputs.iter().position(|input| *input == name.text));
-    (known.unwrap_or(usize::MAX), name.text.clone())
+    (known.unwrap_or(usize::MAX), name.text.to_string())
 }

@@ -121,7 +121,7 @@ impl<'a> Maker<'a> {
         match &expr.kind {
             ExprKind::Name(name) => {
                 if let Some(value) = self.name(name) {
-                    formula.reads(value, name.clone());
+                    formula.reads(value, name.to_string());
                 }
             }
             ExprKind::Paren(inner) => self.read(formula, inner),
@@ -245,7 +245,7 @@ impl<'a> Maker<'a> {
             let label = format!("{name}.{}", item.text);
             return (self.global(module, &item.text, &label), label, 1);
         }
-        (self.name(name), name.clone(), 0)
+        (self.name(name), name.to_string(), 0)
     }
 
     /// The module that an expression names, if it is nothing else.

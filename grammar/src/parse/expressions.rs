@@ -145,7 +145,7 @@ impl<'s> Builder<'s> {
             let argument = self.argument(part)?;
             let before = arguments.last().and_then(|before| before.name.as_ref());
             if let (None, Some(named)) = (&argument.name, before) {
-                let kind = SyntaxErrorKind::PositionalAfterNamed { named: named.text.clone() };
+                let kind = SyntaxErrorKind::PositionalAfterNamed { named: named.text.to_string() };
                 self.errors.push(SyntaxError::new(kind, argument.value.span));
             }
             arguments.push(argument);

@@ -72,7 +72,7 @@ impl<'s> Builder<'s> {
 
     /// A `name` node as a name.
     pub(super) fn name(&self, node: Pair<'s>) -> Name {
-        Name { text: node.text.to_string(), span: node.span }
+        Name { text: node.text.into(), span: node.span }
     }
 
     /// The next part as a name.
