@@ -169,7 +169,7 @@ impl Builder {
     /// A scalar in every component; a vector as it is.
     pub fn splat(&mut self, value: Value, width: u8) -> Value {
         if self.ty(value).width() == 1 && width > 1 {
-            self.compose(&vec![value; usize::from(width)])
+            self.compose(&[value; 4][..usize::from(width.min(4))])
         } else {
             value
         }

@@ -8,6 +8,7 @@ use crate::intrinsic::{
     ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, MULTIPLY, MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE,
     SUBTRACT, SUBTRACT_INT,
 };
+use smallvec::SmallVec;
 
 /// What an operation folds to.
 pub enum Folded {
@@ -20,13 +21,10 @@ pub enum Folded {
 /// What an operation over values of `function` folds to, if it does.
 pub fn fold(function: &Function, operation: &Operation) -> Option<Folded> {
     match operation {
-        Operation::Builtin(intrinsic, arguments) => {
-            let known: Option<Vec<Constant>> = arguments.iter().map(|v| known(function, *v)).collect();
-            match known {
-                Some(known) => Some(Folded::Operation(Operation::Constant(intrinsic.evaluate(&known)))),
-                None => identity(function, *intrinsic, arguments),
-            }
-        }
+        Operation::Builtin(intrinsic, arguments) => match all_known(function, arguments) {
+            Some(known) => Some(Folded::Operation(Operation::Constant(intrinsic.evaluate(&known)))),
+            None => identity(function, *intrinsic, arguments),
+        },
         Operation::Compose(parts) => compose(function, parts),
         Operation::Extract(vector, i) => extract(function, *vector, *i),
         Operation::Lookup(table, index) => {
@@ -46,6 +44,13 @@ pub fn fold(function: &Function, operation: &Operation) -> Option<Folded> {
         },
         _ => None,
     }
+}
+
+/// The numbers of all of these values, if all are known.
+fn all_known(function: &Function, values: &[Value]) -> Option<SmallVec<[Constant; 4]>> {
+    // Mostly one is not: that is found out first.
+    let is_known = |v: &Value| matches!(function.operation(*v), Operation::Constant(_));
+    values.iter().all(is_known).then(|| values.iter().filter_map(|v| known(function, *v)).collect())
 }
 
 fn known(function: &Function, value: Value) -> Option<Constant> {
@@ -108,8 +113,7 @@ fn choose(function: &Function, arguments: &[Value]) -> Option<Folded> {
 }
 
 fn compose(function: &Function, parts: &[Value]) -> Option<Folded> {
-    let numbers: Option<Vec<Constant>> = parts.iter().map(|v| known(function, *v)).collect();
-    if let Some(numbers) = numbers {
+    if let Some(numbers) = all_known(function, parts) {
         let scalar = numbers.first()?.scalar();
         let whole = Constant::new(scalar, numbers.iter().map(|c| c.bits()[0]));
         return Some(Folded::Operation(Operation::Constant(whole)));

@@ -54,14 +54,12 @@ impl Liveness {
             outputs: functions.iter().map(|f| vec![false; f.outputs.len()]).collect(),
             sites: sites(graph),
         };
-        let mut walk = Walk { graph, liveness, pending: Vec::new() };
+        let mut walk = Walk { graph, liveness, next: (functions.len(), Value(0)), pending: Vec::new() };
         let entry = functions.len().saturating_sub(1);
         for i in 0..functions.last().map_or(0, |entry| entry.outputs.len()) {
             walk.output(entry, i);
         }
-        while let Some((function, value)) = walk.pending.pop() {
-            walk.value(function, value);
-        }
+        (0..functions.len()).rev().for_each(|function| walk.function(function));
         walk.liveness
     }
 
@@ -97,7 +95,9 @@ fn sites(graph: &Graph) -> Vec<Vec<Site>> {
 struct Walk<'a> {
     graph: &'a Graph,
     liveness: Liveness,
-    /// Live values whose operands are to be looked at.
+    /// The value that is looked at: those before it are still to come.
+    next: (usize, Value),
+    /// Live values that were passed over and are to be looked at again.
     pending: Vec<(usize, Value)>,
 }
 
@@ -106,8 +106,30 @@ impl<'a> Walk<'a> {
     fn reads(&mut self, function: usize, value: Value) {
         if let Some(live) = self.liveness.values[function].get_mut(value.0 as usize)
             && !std::mem::replace(live, true)
+            && (function, value) >= self.next
         {
             self.pending.push((function, value));
+        }
+    }
+
+    /// Looks at the values of a function, users first; all that can use it has been looked at.
+    fn function(&mut self, place: usize) {
+        for (value, operation) in self.graph.functions[place].iter().rev() {
+            if !self.liveness.values[place][value.0 as usize] {
+                continue;
+            }
+            let (Operation::Input(_) | Operation::Output(..) | Operation::Call(..) | Operation::Fold(_)) =
+                operation
+            else {
+                let live = &mut self.liveness.values[place];
+                operation.for_operands(|v| live[v.0 as usize] = true);
+                continue;
+            };
+            self.next = (place, value);
+            self.value(place, value, operation);
+            while let Some((place, value)) = self.pending.pop() {
+                self.value(place, value, self.graph.functions[place].operation(value));
+            }
         }
     }
 
@@ -172,10 +194,9 @@ impl<'a> Walk<'a> {
     }
 
     /// What a live value needs.
-    fn value(&mut self, function: usize, value: Value) {
-        let graph = self.graph;
-        let source = &graph.functions[function];
-        match source.operation(value) {
+    fn value(&mut self, function: usize, value: Value, operation: &'a Operation) {
+        let source = &self.graph.functions[function];
+        match operation {
             Operation::Input(i) => self.input(function, *i as usize),
             Operation::Output(of, i) => {
                 self.reads(function, *of);

@@ -4,6 +4,7 @@ use super::{Analysis, Inputs, Layout, Variant, depend, marked};
 use crate::graph::{Fold, Function, FunctionId, Level, Operation, Type, Value};
 use crate::input::is_per_draw;
 use rustc_hash::FxHashMap;
+use smallvec::{SmallVec, smallvec};
 
 /// Variants of a called function at most; one more does all that the others asked for would.
 /// Without a bound, calls in calls could ask for every set of inputs.
@@ -91,7 +92,7 @@ impl Requests {
 fn of_entry(entry: &Function) -> Variant {
     let changing = entry.inputs.iter().enumerate().filter(|(_, slot)| changes(slot.ty, &slot.name));
     let changing = changing.fold(0, |all, (i, _)| all | Layout::CALLED.bit(i));
-    Variant { changing, wanted: vec![false; entry.outputs.len()] }
+    Variant { changing, wanted: smallvec![false; entry.outputs.len()] }
 }
 
 fn changes(ty: Type, name: &str) -> bool {
@@ -100,7 +101,7 @@ fn changes(ty: Type, name: &str) -> bool {
 
 /// The variant of a condition that goes with one of its fold's body.
 pub fn of_condition(body: &Variant) -> Variant {
-    Variant { changing: body.changing, wanted: vec![false] }
+    Variant { changing: body.changing, wanted: smallvec![false] }
 }
 
 /// One variant being looked at.
@@ -173,7 +174,7 @@ impl<'a> Demanding<'a> {
 
     fn call(&mut self, call: Value, callee: FunctionId, arguments: &[Value]) -> Variant {
         let callee = self.analysis.of(callee);
-        let mut wanted = vec![false; callee.outputs.len()];
+        let mut wanted = smallvec![false; callee.outputs.len()];
         let mut useful = callee.needed;
         for output in self.outputs.remove(&call).unwrap_or_default() {
             useful |= callee.outputs.get(output as usize).copied().unwrap_or(0);
@@ -206,7 +207,7 @@ impl<'a> Demanding<'a> {
         let captured = captured.enumerate().map(|(i, depends)| (first + i, depends));
         let changing = carried.chain(captured).filter(|(_, depends)| self.changes(*depends));
         let changing = changing.fold(0, |all, (i, _)| all | layout.bit(i)) & useful;
-        let mut variant = Variant { changing, wanted: Vec::new() };
+        let mut variant = Variant { changing, wanted: SmallVec::new() };
         let operands = fold.starts.iter().enumerate();
         let operands = operands.chain(fold.captures.iter().enumerate().map(|(i, v)| (first + i, v)));
         for (i, operand) in operands {

@@ -1,7 +1,7 @@
 //! Forward, callees first: what every value changes with.
 
 use super::{BITS, Inputs, Layout};
-use crate::graph::{Fold, Graph, Level, Operation, Value};
+use crate::graph::{Fold, Function, Graph, Level, Operation, Value};
 use crate::intrinsic::Derivative;
 use rustc_hash::FxHashMap;
 
@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 pub struct Known {
     /// For each value the inputs that it changes with.
     pub depends: Vec<Inputs>,
-    /// For each call and fold what its outputs change with.
+    /// For each fold what its accumulators change with.
     pub results: FxHashMap<Value, Vec<Inputs>>,
     /// For each output the inputs that it changes with.
     pub outputs: Vec<Inputs>,
@@ -47,6 +47,7 @@ pub fn analyse(graph: &Graph, layouts: &[Layout]) -> Vec<Known> {
     let mut known: Vec<Known> = Vec::with_capacity(graph.functions.len());
     for (function, layout) in graph.functions.iter().zip(layouts) {
         let mut analysis = Depending {
+            function,
             layout: *layout,
             layouts,
             known: &known,
@@ -67,6 +68,7 @@ pub fn analyse(graph: &Graph, layouts: &[Layout]) -> Vec<Known> {
 
 /// A function being looked at.
 struct Depending<'a> {
+    function: &'a Function,
     layout: Layout,
     layouts: &'a [Layout],
     known: &'a [Known],
@@ -94,10 +96,7 @@ impl Depending<'_> {
             Operation::Compose(parts) => self.any(parts),
             Operation::Extract(v, _) => self.of(*v),
             Operation::Select(_, yes, no) => self.of(*yes) | self.of(*no),
-            Operation::Output(of, i) => {
-                let results = self.results.get(of);
-                results.and_then(|results| results.get(*i as usize)).copied().unwrap_or(0)
-            }
+            Operation::Output(of, i) => self.output(*of, *i as usize),
             Operation::Sample { coordinate, level: Level::Auto, .. } => {
                 self.needed |= self.of(*coordinate);
                 0
@@ -107,12 +106,7 @@ impl Depending<'_> {
                 0
             }
             Operation::Call(callee, arguments) => {
-                let callee = &self.known[callee.0 as usize];
-                let arguments = arguments.iter().map(|v| self.of(*v)).enumerate();
-                let sources = Sources::of(Layout::CALLED, arguments);
-                self.needed |= sources.through(callee.needed);
-                let results = callee.outputs.iter().map(|output| sources.through(*output)).collect();
-                self.results.insert(value, results);
+                self.needed |= self.through(arguments, self.known[callee.0 as usize].needed);
                 0
             }
             Operation::Fold(fold) => {
@@ -122,6 +116,24 @@ impl Depending<'_> {
             }
             _ => 0,
         }
+    }
+
+    /// What an output of a call or fold changes with.
+    fn output(&self, of: Value, i: usize) -> Inputs {
+        let output = match self.function.operation(of) {
+            Operation::Call(callee, arguments) => {
+                let output = self.known[callee.0 as usize].outputs.get(i);
+                output.map(|output| self.through(arguments, *output))
+            }
+            _ => self.results.get(&of).and_then(|results| results.get(i)).copied(),
+        };
+        output.unwrap_or(0)
+    }
+
+    /// What a set of the inputs of a called function changes with.
+    fn through(&self, arguments: &[Value], set: Inputs) -> Inputs {
+        let arguments = arguments.iter().enumerate().filter(|(i, _)| set & Layout::CALLED.bit(*i) != 0);
+        arguments.fold(0, |all, (_, value)| all | self.of(*value))
     }
 
     /// What the accumulators of a fold change with, after any number of steps.

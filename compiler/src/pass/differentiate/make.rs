@@ -4,10 +4,14 @@ use super::demand::{Demand, Requests, of_condition};
 use super::{Analysis, Layout, Variant, marked};
 use crate::graph::{Axis, Builder, Constant, Fold, Function, FunctionId, Level, Operation, Slot, Value};
 use crate::intrinsic::{self, Derivative, Tangents};
+use smallvec::SmallVec;
 use std::sync::Arc;
 
 /// The tangents of a value in x and y.
 type Pair = [Value; 2];
+
+/// One for each of the few arguments of an intrinsic.
+type Few<T> = SmallVec<[T; 4]>;
 
 const AXES: [(Axis, &str); 2] = [(Axis::X, "dx"), (Axis::Y, "dy")];
 
@@ -46,7 +50,9 @@ impl<'a> Making<'a> {
         made: &'a [Vec<Made>],
     ) -> Making<'a> {
         let function = &analysis.graph.functions[place];
-        let mut builder = Builder::with_capacity(function.name.clone(), function.values.len());
+        // Tangents are about half as many again.
+        let room = function.values.len() * 3 / 2;
+        let mut builder = Builder::with_capacity(function.name.clone(), room);
         builder.set_expands(true);
         Making {
             analysis,
@@ -206,9 +212,9 @@ impl<'a> Making<'a> {
                 self.apply(rule, old, arguments)
             }
             Operation::Compose(parts) => {
-                let changes: Vec<Pair> = parts.iter().map(|v| self.tangent(*v)).collect();
+                let changes: Few<Pair> = parts.iter().map(|v| self.tangent(*v)).collect();
                 [0, 1].map(|axis| {
-                    let parts: Vec<Value> = changes.iter().map(|pair| pair[axis]).collect();
+                    let parts: Few<Value> = changes.iter().map(|pair| pair[axis]).collect();
                     self.builder.compose(&parts)
                 })
             }
@@ -228,11 +234,11 @@ impl<'a> Making<'a> {
     }
 
     fn apply(&mut self, rule: fn(&mut Tangents) -> Value, old: Value, arguments: &[Value]) -> Pair {
-        let new: Vec<Value> = arguments.iter().map(|v| self.value(*v)).collect();
-        let changes: Vec<Pair> = arguments.iter().map(|v| self.tangent(*v)).collect();
+        let new: Few<Value> = arguments.iter().map(|v| self.value(*v)).collect();
+        let changes: Few<Pair> = arguments.iter().map(|v| self.tangent(*v)).collect();
         let result = self.value(old);
         [0, 1].map(|axis| {
-            let tangents: Vec<Value> = changes.iter().map(|pair| pair[axis]).collect();
+            let tangents: Few<Value> = changes.iter().map(|pair| pair[axis]).collect();
             let builder = &mut self.builder;
             rule(&mut Tangents { builder, arguments: &new, result, tangents: &tangents })
         })

@@ -25,6 +25,7 @@ use crate::graph::{FunctionId, Graph, Operation, Type, Value};
 use demand::Requests;
 use depend::Known;
 use make::{Made, Making};
+use smallvec::SmallVec;
 
 /// A set of inputs of a function. Those from bit 127 on share it: they may count as dependent when
 /// they are not.
@@ -81,7 +82,7 @@ impl Layout {
 #[derive(Clone, PartialEq, Eq)]
 struct Variant {
     changing: Inputs,
-    wanted: Vec<bool>,
+    wanted: SmallVec<[bool; 16]>,
 }
 
 impl Variant {

@@ -99,16 +99,15 @@ struct Hoisting<'a> {
 impl Hoisting<'_> {
     fn function(&mut self, place: usize, function: Function, role: &Use) {
         let outside = self.outside(place, &function, role);
-        let function = match self.is_concerned(&function, role, &outside) {
-            true => Rewriting::new(self, place, &function).run(),
-            false => function,
-        };
+        let is_concerned = self.is_concerned(&function, role, &outside);
+        let function = if is_concerned { Rewriting::new(self, place, &function).run() } else { function };
         let partner = match role {
             Use::Folded { partner, .. } => partner.filter(|partner| *partner < place),
             _ => None,
         };
         let padding = partner.map(|partner| self.moved(partner)).unwrap_or_default();
-        let (mut rest, before) = match self.split(place, &function, role, &outside, &padding) {
+        let split = is_concerned.then(|| self.split(place, &function, role, &outside, &padding)).flatten();
+        let (mut rest, before) = match split {
             Some((before, rest)) => (rest, Some(before)),
             None => (function, None),
         };
