@@ -121,6 +121,9 @@ impl Regions {
     /// `first` (by index, operands of marked ones marked too) stand at the top whoever uses them.
     pub fn inside(function: &Function, weights: &Weights, depth: u32, first: &[bool]) -> Regions {
         let live = live(function);
+        if !function.values.iter().any(|operation| weights.is_heavy(operation)) {
+            return Regions::one(depth, live);
+        }
         let mut placing = Placing {
             function,
             first,
@@ -130,15 +133,24 @@ impl Regions {
             blocks: Vec::new(),
             places: Vec::new(),
         };
-        let heavy = function.values.iter().any(|operation| weights.is_heavy(operation));
-        if heavy && !placing.groups.all.is_empty() {
-            placing.place(depth);
-            placing.keep_heavy(weights);
-        } else {
-            placing.groups.all.iter_mut().for_each(|group| group.branches = false);
+        if placing.groups.all.is_empty() {
+            return Regions::one(depth, live);
         }
         placing.place(depth);
+        placing.keep_heavy(weights);
+        placing.place(depth);
         placing.finish()
+    }
+
+    /// A function without branches: all that is live stands at the top.
+    fn one(depth: u32, live: Vec<bool>) -> Regions {
+        let values = (0..).map(Value).zip(&live).filter(|(_, live)| **live).map(|(value, _)| value).collect();
+        Regions {
+            blocks: vec![Block { parent: Region::TOP, depth, values }],
+            places: live.into_iter().map(|live| live.then_some(Region::TOP)).collect(),
+            branches: Vec::new(),
+            branch_of: FxHashMap::default(),
+        }
     }
 
     /// Where a value stands; none if nothing needs it.

@@ -6,12 +6,27 @@
 use super::Lowering;
 use super::body::{Body, Variable};
 use super::frame::Frame;
+use super::operation::literal;
 use crate::graph::regions::{Branch, Region};
 use crate::graph::{Operation, Value};
 use naga::Statement;
 use std::rc::Rc;
 
 impl Lowering<'_> {
+    /// The numbers that a function needs, before all else: each would part the expressions before
+    /// it from those behind.
+    pub(super) fn numbers(&mut self, body: &mut Body, frame: &mut Frame) {
+        for (value, operation) in frame.function.iter() {
+            if let Operation::Constant(constant) = operation
+                && frame.is_wanted(value)
+            {
+                for i in 0..usize::from(constant.width()) {
+                    body.literal(literal(constant, i));
+                }
+            }
+        }
+    }
+
     /// Lowers the marked values: they stand at the top, before all others.
     pub(super) fn first(&mut self, body: &mut Body, frame: &mut Frame, marked: &[bool]) {
         let marked = marked.iter().enumerate().filter(|(_, marked)| **marked);
@@ -35,9 +50,13 @@ impl Lowering<'_> {
             return;
         }
         let operation = frame.function.operation(value);
+        if matches!(operation, Operation::Constant(constant) if constant.width() > 1) {
+            // Written out wherever it is used.
+            return;
+        }
         let handle = self.operation(body, frame, value, operation);
-        if let Some(wish) = frame.set(value, handle) {
-            body.name(&mut self.names, handle, &wish);
+        if frame.set(value, handle) {
+            body.name(&mut self.names, handle, frame.name(value));
         }
     }
 
@@ -63,7 +82,7 @@ impl Lowering<'_> {
         let Operation::Select(_, yes, no) = operation else { unreachable!("a branch makes choices") };
         let ty = self.types.get(&mut self.module.types, frame.function.ty(value));
         let target = frame.targets.remove(&value);
-        let variable = target.unwrap_or_else(|| body.variable(&mut self.names, &frame.name(value), ty));
+        let variable = target.unwrap_or_else(|| body.variable(&mut self.names, frame.name(value), ty));
         Choice { value, arms: [*yes, *no], variable }
     }
 

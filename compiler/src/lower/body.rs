@@ -2,14 +2,15 @@
 
 use crate::graph::{ParamId, ViewId};
 use crate::naming::{Names, Scope};
-use naga::{BinaryOperator, Block, Expression, Handle, Literal, Span, Statement};
+use naga::{BinaryOperator, Block, Expression, Handle, Literal, Scalar, Span, Statement};
 use rustc_hash::FxHashMap;
 
 /// The expressions and statements of a naga function, the names taken in it, and where it finds
 /// what is not computed.
 pub struct Body<'f> {
     function: &'f mut naga::Function,
-    emitter: naga::proc::Emitter,
+    /// How many of the expressions stand in statements already, or need none.
+    emitted: usize,
     /// The blocks around the current one, outermost first.
     around: Vec<Block>,
     pub scope: Scope,
@@ -17,6 +18,8 @@ pub struct Body<'f> {
     pub views: FxHashMap<ViewId, Handle<Expression>>,
     /// The sampler that goes with a texture.
     pub samplers: FxHashMap<Handle<Expression>, Handle<Expression>>,
+    /// Numbers that are there already.
+    literals: FxHashMap<(Scalar, u32), Handle<Expression>>,
     /// Numbers of calls' results with their names.
     results: Results,
 }
@@ -40,23 +43,25 @@ impl Variable {
 
 impl<'f> Body<'f> {
     pub fn new(function: &'f mut naga::Function, scope: Scope) -> Body<'f> {
-        let mut emitter = naga::proc::Emitter::default();
-        emitter.start(&function.expressions);
         Body {
+            emitted: function.expressions.len(),
             function,
-            emitter,
             around: Vec::new(),
             scope,
             params: FxHashMap::default(),
             views: FxHashMap::default(),
             samplers: FxHashMap::default(),
+            literals: FxHashMap::default(),
             results: FxHashMap::default(),
         }
     }
 
     fn flush(&mut self) {
-        if let Some((statement, span)) = self.emitter.finish(&self.function.expressions) {
-            self.function.body.push(statement, span);
+        let expressions = &self.function.expressions;
+        if self.emitted < expressions.len() {
+            let range = expressions.range_from(self.emitted);
+            self.emitted = expressions.len();
+            self.function.body.push(Statement::Emit(range), Span::UNDEFINED);
         }
     }
 
@@ -67,31 +72,26 @@ impl<'f> Body<'f> {
             return self.function.expressions.append(expression, Span::UNDEFINED);
         }
         self.flush();
-        let handle = self.function.expressions.append(expression, Span::UNDEFINED);
-        self.emitter.start(&self.function.expressions);
-        handle
+        self.emitted += 1;
+        self.function.expressions.append(expression, Span::UNDEFINED)
     }
 
     pub fn statement(&mut self, statement: Statement) {
         self.flush();
         self.function.body.push(statement, Span::UNDEFINED);
-        self.emitter.start(&self.function.expressions);
     }
 
     /// Begins a block: what follows stands in it, until it is closed.
     pub fn open(&mut self) {
         self.flush();
         self.around.push(std::mem::take(&mut self.function.body));
-        self.emitter.start(&self.function.expressions);
     }
 
     /// Ends the innermost block that is open.
     pub fn close(&mut self) -> Block {
         self.flush();
         let around = self.around.pop().unwrap_or_default();
-        let inner = std::mem::replace(&mut self.function.body, around);
-        self.emitter.start(&self.function.expressions);
-        inner
+        std::mem::replace(&mut self.function.body, around)
     }
 
     /// Ends the function.
@@ -106,8 +106,21 @@ impl<'f> Body<'f> {
         self.function.named_expressions.insert(expression, name);
     }
 
+    /// A number; there is one expression for each, wherever it is used.
     pub fn literal(&mut self, literal: Literal) -> Handle<Expression> {
-        self.add(Expression::Literal(literal))
+        let (scalar, bits) = match literal {
+            Literal::F32(float) => (Scalar::F32, float.to_bits()),
+            Literal::I32(int) => (Scalar::I32, int as u32),
+            Literal::U32(word) => (Scalar::U32, word),
+            Literal::Bool(bool) => (Scalar::BOOL, u32::from(bool)),
+            _ => return self.add(Expression::Literal(literal)),
+        };
+        if let Some(handle) = self.literals.get(&(scalar, bits)) {
+            return *handle;
+        }
+        let handle = self.add(Expression::Literal(literal));
+        self.literals.insert((scalar, bits), handle);
+        handle
     }
 
     pub fn binary(

@@ -36,7 +36,7 @@ impl Lowering<'_> {
         let steps = self.steps(body, frame, fold);
         let accumulators = self.accumulators(body, frame, step, fold);
         let counter = self.counter(body, step, fold);
-        let captures: Vec<Argument> = fold.captures.iter().map(|v| frame.argument(*v)).collect();
+        let captures: Vec<Argument> = fold.captures.iter().map(|v| self.argument(body, frame, *v)).collect();
         body.open();
         let number = body.load(&mut self.names, &counter);
         let done = body.binary(BinaryOperator::GreaterEqual, number, steps);
@@ -57,6 +57,11 @@ impl Lowering<'_> {
         let continuing = count_up(body, &counter, number);
         body.statement(Statement::Loop { body: stepped, continuing, break_if: None });
         accumulators.iter().map(|variable| body.load(&mut self.names, variable)).collect()
+    }
+
+    /// A value of the frame around as an input of a step.
+    fn argument(&mut self, body: &mut Body, frame: &Frame, value: Value) -> Argument {
+        Argument { handle: self.operand(body, frame, value), known: frame.constant(value) }
     }
 
     fn loaded(&mut self, body: &mut Body, variable: &Variable) -> Argument {

@@ -75,12 +75,8 @@ impl<'g> Frame<'g> {
         }
     }
 
-    /// A value as the argument of another function.
-    pub fn argument(&self, value: Value) -> Argument {
-        Argument { handle: self.get(value), known: self.constant(value) }
-    }
-
-    /// A lowered value. Operands come before what uses them, so it is there.
+    /// A lowered value that is no constant vector. Operands come before what uses them, so it is
+    /// there.
     pub fn get(&self, value: Value) -> Handle<Expression> {
         match self.values[value.0 as usize] {
             Some(handle) => handle,
@@ -111,22 +107,22 @@ impl<'g> Frame<'g> {
         self.nest[value.0 as usize] > 0
     }
 
-    /// Notes that a value is lowered; how to name it, if it is to be named.
-    pub fn set(&mut self, value: Value, handle: Handle<Expression>) -> Option<String> {
+    /// Notes that a value is lowered; whether it is to be named.
+    pub fn set(&mut self, value: Value, handle: Handle<Expression>) -> bool {
         self.values[value.0 as usize] = Some(handle);
         let operation = self.function.operation(value);
         if self.needs_no_name(operation, handle) {
-            return None;
+            return false;
         }
         let mut nest = 0;
         operation.for_operands(|v| nest = nest.max(self.nest[v.0 as usize]));
         let nest = nest.saturating_add(1);
         let shared = !is_cheap(operation) && self.uses[value.0 as usize] > 1;
         if self.author(value).is_some() || is_eager(operation) || nest >= MAX_NEST || shared {
-            return Some(self.name(value));
+            return true;
         }
         self.nest[value.0 as usize] = nest;
-        None
+        false
     }
 
     /// Notes what a variable's value is.
@@ -146,10 +142,9 @@ impl<'g> Frame<'g> {
     }
 
     /// What a value is called, if it has to have a name.
-    pub fn name(&self, value: Value) -> String {
-        let next = self.next.get(&value).map(String::as_str);
-        let hint = || hint(self.function.operation(value));
-        self.author(value).or(next).unwrap_or_else(hint).to_owned()
+    pub fn name(&self, value: Value) -> &str {
+        let next = || self.next.get(&value).map(String::as_str);
+        self.author(value).or_else(next).unwrap_or_else(|| hint(self.function.operation(value)))
     }
 
     /// Known, or held by a name or variable of its own.
@@ -200,7 +195,7 @@ fn is_eager(operation: &Operation) -> bool {
 }
 
 /// What a value without a name of its own is called.
-fn hint(operation: &Operation) -> &str {
+fn hint(operation: &Operation) -> &'static str {
     match operation {
         Operation::Sample { .. } => "sampled",
         Operation::Texel { .. } => "texel",
@@ -228,7 +223,7 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
         let mut add = |v: Value, times: u32| uses[v.0 as usize] += times;
         match operation {
             Operation::Builtin(MULTIPLY | MULTIPLY_INT, factors) => {
-                written_factors(function, factors).into_iter().for_each(|v| add(v, 1));
+                factors.iter().for_each(|v| add(written_factor(function, factors, *v), 1));
             }
             Operation::Select(condition, yes, no) => {
                 let first = regions.branch(value).is_none_or(|branch| branch.choices[0] == value);
@@ -251,13 +246,11 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
     uses
 }
 
-/// The factors of a product as they are written.
-fn written_factors(function: &Function, factors: &[Value]) -> Vec<Value> {
-    let scalars: Vec<Option<Splat>> = factors.iter().map(|v| splat_of(function, *v)).collect();
-    match (factors, scalars.as_slice()) {
-        ([_, vector], [Some(Splat::Value(scalar)), None]) => vec![*scalar, *vector],
-        ([vector, _], [None, Some(Splat::Value(scalar))]) => vec![*vector, *scalar],
-        _ => factors.to_vec(),
+/// A factor of a product as it is written.
+fn written_factor(function: &Function, factors: &[Value], factor: Value) -> Value {
+    match splat_of(function, factor) {
+        Some(Splat::Value(scalar)) if !factors.iter().all(|v| splat_of(function, *v).is_some()) => scalar,
+        _ => factor,
     }
 }
 

@@ -38,17 +38,19 @@ impl Lowering<'_> {
         let mut frame = Frame::new(source, Regions::inside(source, &self.weights, 0, &first));
         let inputs = self.bind_arguments(&mut body, source, &reads);
         frame.bind(&inputs);
+        self.numbers(&mut body, &mut frame);
         self.first(&mut body, &mut frame, &first);
         self.block(&mut body, &mut frame, Region::TOP);
         let outputs: Vec<Handle<Expression>> =
-            source.outputs.iter().map(|(_, value)| frame.get(*value)).collect();
+            source.outputs.iter().map(|(_, value)| self.operand(&mut body, &frame, *value)).collect();
         let value = match outputs.as_slice() {
             [single] => *single,
             _ => body.add(Expression::Compose { ty: result, components: outputs }),
         };
         self.results.push(body.finish(value));
         let handle = self.module.functions.append(function, Span::UNDEFINED);
-        self.functions[index] = Some(Callee { handle, is_struct, name: source.name.clone() });
+        let result = format!("{}_of", source.name.trim_start_matches('_'));
+        self.functions[index] = Some(Callee { handle, is_struct, result });
     }
 
     /// The type of a function's result: its only output, or a struct of all.

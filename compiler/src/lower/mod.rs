@@ -51,8 +51,8 @@ struct Callee {
     handle: Handle<naga::Function>,
     /// Its result is a struct, one member for each output.
     is_struct: bool,
-    /// For messages and names of results.
-    name: String,
+    /// What a result is called that has no name of its own.
+    result: String,
 }
 
 /// Everything while a module is being made.

@@ -198,28 +198,26 @@ impl Lowering<'_> {
         callee: FunctionId,
         arguments: &[Value],
     ) -> Handle<Expression> {
-        let operands: Vec<Handle<Expression>> =
-            arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
-        let reads = &self.reads[callee.0 as usize];
-        let mut all = Vec::new();
-        let mut push = |handle: Handle<Expression>, ty: Type| {
+        let mut all = Vec::with_capacity(arguments.len() + 1);
+        for argument in arguments {
+            let handle = self.operand(body, frame, *argument);
             all.push(handle);
-            if has_sampler(ty) {
+            if has_sampler(frame.function.ty(*argument)) {
                 all.extend(body.samplers.get(&handle));
             }
-        };
-        operands.into_iter().zip(arguments).for_each(|(handle, v)| push(handle, frame.function.ty(*v)));
+        }
+        let reads = &self.reads[callee.0 as usize];
         for id in &reads.params {
-            push(body.params[id], Type::FLOAT);
+            all.push(body.params[id]);
         }
         for id in &reads.views {
-            push(body.views[id], Type::View(self.graph.views[id.0 as usize].view));
+            let handle = body.views[id];
+            all.push(handle);
+            all.extend(body.samplers.get(&handle));
         }
         let callee = self.callee(callee);
         let author = frame.author_of_result(value).filter(|_| !callee.is_struct);
-        let wish =
-            author.map_or_else(|| format!("{}_of", callee.name.trim_start_matches('_')), str::to_owned);
-        body.call(callee.handle, all, &wish)
+        body.call(callee.handle, all, author.unwrap_or(&callee.result))
     }
 
     fn builtin(
@@ -237,72 +235,41 @@ impl Lowering<'_> {
         {
             return product;
         }
-        let operands: Vec<Handle<Expression>> =
-            arguments.iter().map(|v| self.operand(body, frame, *v)).collect();
-        let ty = arguments.first().map_or(Type::FLOAT, |v| frame.function.ty(*v));
-        match intrinsic.row().form {
-            Form::Operator(symbol @ ("<<" | ">>")) => self.shift(body, frame, symbol, &operands, arguments),
-            Form::Operator(symbol) => self.operator(body, symbol, ty, &operands),
-            Form::Function(name) => body.add(Expression::Math {
-                fun: math(name),
-                arg: operands[0],
-                arg1: operands.get(1).copied(),
-                arg2: operands.get(2).copied(),
-                arg3: None,
-            }),
-            Form::Convert => {
+        let mut operands = arguments.iter().map(|v| self.operand(body, frame, *v));
+        let Some(arg) = operands.next() else { unreachable!("an intrinsic has an argument") };
+        let (arg1, arg2) = (operands.next(), operands.next());
+        let ty = frame.function.ty(arguments[0]);
+        match (intrinsic.row().form, arg1, arg2) {
+            (Form::Operator(symbol @ ("<<" | ">>")), Some(count), _) => {
+                self.shift(body, frame, symbol, (arg, count), arguments)
+            }
+            (Form::Operator(symbol), Some(right), _) => body.binary(binary(symbol, ty), arg, right),
+            (Form::Operator(symbol), ..) => {
+                let op =
+                    if symbol == "!" { naga::UnaryOperator::LogicalNot } else { naga::UnaryOperator::Negate };
+                body.add(Expression::Unary { op, expr: arg })
+            }
+            (Form::Function(name), ..) => {
+                body.add(Expression::Math { fun: math(name), arg, arg1, arg2, arg3: None })
+            }
+            (Form::Convert, ..) => {
                 let kind = if ty.is_float() { ScalarKind::Sint } else { ScalarKind::Float };
-                body.convert(operands[0], kind)
+                body.convert(arg, kind)
             }
-            Form::All if ty.width() == 1 => operands[0],
-            Form::All => {
-                body.add(Expression::Relational { fun: naga::RelationalFunction::All, argument: operands[0] })
+            (Form::All, ..) if ty.width() == 1 => arg,
+            (Form::All, ..) => {
+                body.add(Expression::Relational { fun: naga::RelationalFunction::All, argument: arg })
             }
-            Form::Choose => body.add(Expression::Select {
-                condition: operands[0],
-                accept: operands[1],
-                reject: operands[2],
-            }),
-            Form::Helper(helper) => {
+            (Form::Choose, Some(accept), Some(reject)) => {
+                body.add(Expression::Select { condition: arg, accept, reject })
+            }
+            (Form::Choose, ..) => unreachable!("a choice has three arguments"),
+            (Form::Helper(helper), ..) => {
                 let function = self.helper(helper);
-                body.call(function, operands, frame.author(value).unwrap_or("random"))
+                body.call(function, vec![arg], frame.author(value).unwrap_or("random"))
             }
-            Form::Expand(_) => unreachable!("expanded before lowering"),
+            (Form::Expand(_), ..) => unreachable!("expanded before lowering"),
         }
-    }
-
-    fn operator(
-        &mut self,
-        body: &mut Body,
-        symbol: &str,
-        ty: Type,
-        operands: &[Handle<Expression>],
-    ) -> Handle<Expression> {
-        if let [operand] = operands {
-            let op =
-                if symbol == "!" { naga::UnaryOperator::LogicalNot } else { naga::UnaryOperator::Negate };
-            return body.add(Expression::Unary { op, expr: *operand });
-        }
-        let single = ty.width() == 1 && ty.scalar() == Some(Scalar::Bool);
-        let op = match symbol {
-            "+" => BinaryOperator::Add,
-            "-" => BinaryOperator::Subtract,
-            "*" => BinaryOperator::Multiply,
-            "/" => BinaryOperator::Divide,
-            "<" => BinaryOperator::Less,
-            "<=" => BinaryOperator::LessEqual,
-            ">" => BinaryOperator::Greater,
-            ">=" => BinaryOperator::GreaterEqual,
-            "==" => BinaryOperator::Equal,
-            "!=" => BinaryOperator::NotEqual,
-            "&" if single => BinaryOperator::LogicalAnd,
-            "|" if single => BinaryOperator::LogicalOr,
-            "&" => BinaryOperator::And,
-            "|" => BinaryOperator::InclusiveOr,
-            "^" => BinaryOperator::ExclusiveOr,
-            _ => unreachable!("a row of the intrinsic table names an operator that is not lowered: {symbol}"),
-        };
-        body.binary(op, operands[0], operands[1])
     }
 
     /// A vector times a scalar, where the other factor is a scalar in every component.
@@ -328,15 +295,15 @@ impl Lowering<'_> {
         body: &mut Body,
         frame: &Frame,
         symbol: &str,
-        operands: &[Handle<Expression>],
+        (word, count): (Handle<Expression>, Handle<Expression>),
         arguments: &[Value],
     ) -> Handle<Expression> {
         let op = if symbol == "<<" { BinaryOperator::ShiftLeft } else { BinaryOperator::ShiftRight };
         let count = match frame.constant(arguments[1]) {
             Some(c) if c.width() == 1 => body.literal(Literal::U32(c.int(0) as u32)),
-            _ => body.convert(operands[1], ScalarKind::Uint),
+            _ => body.convert(count, ScalarKind::Uint),
         };
-        body.binary(op, operands[0], count)
+        body.binary(op, word, count)
     }
 
     /// An output as a colour of four: what the complete form writes.
@@ -372,6 +339,29 @@ pub fn literal(constant: &Constant, i: usize) -> Literal {
         Scalar::Float => Literal::F32(constant.float(i)),
         Scalar::Int => Literal::I32(constant.int(i)),
         Scalar::Bool => Literal::Bool(constant.bool(i)),
+    }
+}
+
+/// The shader language's infix operator of that symbol, for operands of type `ty`.
+fn binary(symbol: &str, ty: Type) -> BinaryOperator {
+    let single = ty.width() == 1 && ty.scalar() == Some(Scalar::Bool);
+    match symbol {
+        "+" => BinaryOperator::Add,
+        "-" => BinaryOperator::Subtract,
+        "*" => BinaryOperator::Multiply,
+        "/" => BinaryOperator::Divide,
+        "<" => BinaryOperator::Less,
+        "<=" => BinaryOperator::LessEqual,
+        ">" => BinaryOperator::Greater,
+        ">=" => BinaryOperator::GreaterEqual,
+        "==" => BinaryOperator::Equal,
+        "!=" => BinaryOperator::NotEqual,
+        "&" if single => BinaryOperator::LogicalAnd,
+        "|" if single => BinaryOperator::LogicalOr,
+        "&" => BinaryOperator::And,
+        "|" => BinaryOperator::InclusiveOr,
+        "^" => BinaryOperator::ExclusiveOr,
+        _ => unreachable!("a row of the intrinsic table names an operator that is not lowered: {symbol}"),
     }
 }
 
