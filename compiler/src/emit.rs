@@ -16,6 +16,9 @@ const LONG: [&str; 2] =
 /// ... and with it.
 const SHORT: [&str; 2] = ["1e-37f", "1e38f"];
 
+/// How the writer calls what lowering takes for `mix`.
+const STANDS_FOR_MIX: &str = "smoothstep(";
+
 /// The module as WGSL.
 ///
 /// # Errors
@@ -31,6 +34,7 @@ pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let text = replaced(text, GREATEST_SHORT, GREATEST);
     let text = replaced(text, LONG[0], SHORT[0]);
     let text = replaced(text, LONG[1], SHORT[1]);
+    let text = replaced(text, STANDS_FOR_MIX, "mix(");
     Ok(lowered.names.apply(&text, &lowered.results))
 }
 
