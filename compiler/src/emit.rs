@@ -1,20 +1,20 @@
 //! naga module to text. naga validates; its writer writes; our names replace its placeholders.
 
 use crate::lower::Lowered;
+use memchr::memmem;
 use naga::back::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// The greatest float as the writer prints it: rounded up, beyond what a float can be. naga reads
-/// it back; Tint refuses it.
-const GREATEST_SHORT: &str = "340282350000000000000000000000000000000f";
-/// The greatest float.
-const GREATEST: &str = "3.4028234663852886e38f";
-
-/// The bounds of [`crate::intrinsic`], which the writer prints without an exponent, ...
-const LONG: [&str; 2] =
-    ["0.0000000000000000000000000000000000001f", "100000000000000000000000000000000000000f"];
-/// ... and with it.
-const SHORT: [&str; 2] = ["1e-37f", "1e38f"];
+/// Numbers that the writer prints without an exponent, and how they are to be written. The greatest
+/// float it rounds up, beyond what a float can be: naga reads that back, Tint refuses it. The others
+/// are the bounds of [`crate::intrinsic`].
+const NUMBERS: [(&str, &str); 3] = [
+    ("340282350000000000000000000000000000000f", "3.4028234663852886e38f"),
+    ("0.0000000000000000000000000000000000001f", "1e-37f"),
+    ("100000000000000000000000000000000000000f", "1e38f"),
+];
+/// What all of them have, and hardly anything else.
+const ZEROS: &str = "0000000000000000000000000000000";
 
 /// How the writer calls what lowering takes for `mix`.
 const STANDS_FOR_MIX: &str = "smoothstep(";
@@ -31,16 +31,16 @@ pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     // The writer breaks the line behind attributes.
     let text = replaced(text, ") \nvar", ") var");
     let text = replaced(text, "@fragment \n", "@fragment\n");
-    let text = replaced(text, GREATEST_SHORT, GREATEST);
-    let text = replaced(text, LONG[0], SHORT[0]);
-    let text = replaced(text, LONG[1], SHORT[1]);
-    let text = replaced(text, STANDS_FOR_MIX, "mix(");
+    let mut text = replaced(text, STANDS_FOR_MIX, "mix(");
+    if memmem::find(text.as_bytes(), ZEROS.as_bytes()).is_some() {
+        text = NUMBERS.iter().fold(text, |text, (long, short)| replaced(text, long, short));
+    }
     Ok(lowered.names.apply(&text, &lowered.results))
 }
 
 /// A long text with every `from` replaced: mostly there is none, or one.
 fn replaced(text: String, from: &str, to: &str) -> String {
-    let mut found = memchr::memmem::find_iter(text.as_bytes(), from).peekable();
+    let mut found = memmem::find_iter(text.as_bytes(), from).peekable();
     if found.peek().is_none() {
         return text;
     }
