@@ -5,19 +5,19 @@ use memchr::memmem;
 use naga::back::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// Numbers that the writer prints without an exponent, and how they are to be written. The greatest
-/// float it rounds up, beyond what a float can be: naga reads that back, Tint refuses it. The others
-/// are the bounds of [`crate::intrinsic`].
-const NUMBERS: [(&str, &str); 3] = [
+/// What the writer writes otherwise than it is to stand there.
+const REPLACED: [(&str, &str); 6] = [
+    // It breaks the line behind attributes.
+    (") \nvar", ") var"),
+    ("@fragment \n", "@fragment\n"),
+    // It prints numbers without an exponent. The greatest float it rounds up, beyond what a float can
+    // be: naga reads that back, Tint refuses it. The others are the bounds of `intrinsic`.
     ("340282350000000000000000000000000000000f", "3.4028234663852886e38f"),
     ("0.0000000000000000000000000000000000001f", "1e-37f"),
     ("100000000000000000000000000000000000000f", "1e38f"),
+    // What lowering takes for `mix`.
+    ("smoothstep(", "mix("),
 ];
-/// What all of them have, and hardly anything else.
-const ZEROS: &str = "0000000000000000000000000000000";
-
-/// How the writer calls what lowering takes for `mix`.
-const STANDS_FOR_MIX: &str = "smoothstep(";
 
 /// The module as WGSL.
 ///
@@ -28,28 +28,22 @@ pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let info = validator.validate(&lowered.module).map_err(|error| describe(&error))?;
     let text =
         wgsl::write_string(&lowered.module, &info, wgsl::WriterFlags::empty()).map_err(|e| describe(&e))?;
-    // The writer breaks the line behind attributes.
-    let text = replaced(text, ") \nvar", ") var");
-    let text = replaced(text, "@fragment \n", "@fragment\n");
-    let mut text = replaced(text, STANDS_FOR_MIX, "mix(");
-    if memmem::find(text.as_bytes(), ZEROS.as_bytes()).is_some() {
-        text = NUMBERS.iter().fold(text, |text, (long, short)| replaced(text, long, short));
-    }
-    Ok(lowered.names.apply(&text, &lowered.results))
+    Ok(lowered.names.apply(&replaced(&text), &lowered.results))
 }
 
-/// A long text with every `from` replaced: mostly there is none, or one.
-fn replaced(text: String, from: &str, to: &str) -> String {
-    let mut found = memmem::find_iter(text.as_bytes(), from).peekable();
-    if found.peek().is_none() {
-        return text;
-    }
+/// The text with everything replaced that is to be.
+fn replaced(text: &str) -> String {
+    let places = REPLACED.iter().flat_map(|(from, to)| {
+        memmem::find_iter(text.as_bytes(), from).map(move |start| (start, start + from.len(), *to))
+    });
+    let mut places: Vec<(usize, usize, &str)> = places.collect();
+    places.sort_unstable();
     let mut out = String::with_capacity(text.len());
     let mut done = 0;
-    for start in found {
+    for (start, end, to) in places {
         out += &text[done..start];
         out += to;
-        done = start + from.len();
+        done = end;
     }
     out + &text[done..]
 }
