@@ -71,5 +71,6 @@ fn literal(ty: &InputType, input: &Input) -> Option<Constant> {
         ExprKind::Bool(holds) => Constant::bools(&[*holds]),
         _ => return None,
     };
-    matches!(ty, InputType::Same(Declared::Vector(scalar, 1)) if *scalar == constant.scalar()).then_some(constant)
+    matches!(ty, InputType::Same(Declared::Vector(scalar, 1)) if *scalar == constant.scalar())
+        .then_some(constant)
 }

@@ -256,7 +256,9 @@ impl<'a> Checker<'a> {
     /// A frame with the inputs of its node in scope.
     fn frame(&mut self, node: &'a Node, key: Key, parent: Option<usize>) -> Frame<'a> {
         let mut f = Frame::empty();
-        f.builder = Builder::new(render::name_of(node, key.wire.as_deref()));
+        // A statement makes a few values.
+        let values = 4 * node.body.statements.len();
+        f.builder = Builder::with_capacity(render::name_of(node, key.wire.as_deref()), values);
         f.node = Some(node);
         f.module = key.module;
         f.parent = parent;
