@@ -172,3 +172,33 @@ fn row(callable: Callable) -> Option<usize> {
         Callable::Constructor(kind) => Some(Intrinsic::all().count() + kind),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Options, compile};
+    use std::collections::HashMap;
+
+    const TEXT: &str = r#"
+let rock = image("rock.jpg")
+
+texture t(uv: vec2) -> (color: color) {
+    let mixed = mix(turbulence(uv), fbm(uv * 3.0, octaves: 2), noise(uv, seed: 7))
+    let again = noise(vec3(uv, fbm(uv)))
+    let turn  = rotation(again) * uv
+    color     = over(rock.hex_tile(turn) * mixed, hue(again))
+}
+"#;
+
+    #[test]
+    fn nodes_made_ahead_are_those_made_in_place() {
+        let files: HashMap<String, String> = [("t.tex".to_owned(), TEXT.to_owned())].into();
+        let library = Library::standard().unwrap();
+        assert!(!library.prepared.is_empty());
+        let plain = Library { prepared: FxHashMap::default(), ..library.clone() };
+        let [ahead, in_place] = [library, plain].map(|library| {
+            compile(&library, "t.tex", &files, &Options::default()).unwrap().program.texture().wgsl.clone()
+        });
+        assert_eq!(ahead, in_place);
+    }
+}
