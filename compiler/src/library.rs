@@ -1,7 +1,7 @@
 //! The standard library: `std/*.tex`, parsed once, its nodes made as most programs call them, and
 //! shared by every compilation.
 
-use crate::check::{self, Key, Prepared};
+use crate::check::{self, Key, Known, Prepared};
 use crate::intrinsic::Intrinsic;
 use crate::module::{Module, Source, Sources};
 use crate::resource::KINDS;
@@ -38,6 +38,8 @@ pub struct Library {
     callables: FxHashMap<String, Vec<Callable>>,
     /// Signatures of the intrinsics, by row, then of the constructors.
     signatures: Vec<Signature>,
+    /// What is known of the inputs of each.
+    known: Vec<Vec<Known>>,
     /// Nodes as most programs call them.
     prepared: FxHashMap<Key, Prepared>,
 }
@@ -66,6 +68,7 @@ impl Library {
             modules: Vec::new(),
             callables: FxHashMap::default(),
             signatures: Vec::new(),
+            known: Vec::new(),
             prepared: FxHashMap::default(),
         };
         for (path, text) in files {
@@ -91,6 +94,7 @@ impl Library {
         self.modules.push(Module {
             file: module as u32,
             path: path.to_owned(),
+            known: check::known_of_items(&tree).into(),
             tree: Arc::new(tree),
             imports: Vec::new(),
         });
@@ -116,6 +120,7 @@ impl Library {
     fn add_signature(&mut self, name: &str, text: &str) -> Result<(), String> {
         let signature =
             texgraph_grammar::parse_signature(text).map_err(|e| format!("{name}: {text}: {e}"))?;
+        self.known.push(check::known(&signature.dims, &signature.inputs));
         self.signatures.push(signature);
         Ok(())
     }
@@ -150,10 +155,50 @@ impl Library {
 
     /// The signature of an intrinsic or a constructor; none for nodes, which have their own head.
     pub fn signature(&self, callable: Callable) -> Option<&Signature> {
-        match callable {
-            Callable::Node(..) => None,
-            Callable::Intrinsic(intrinsic) => self.signatures.get(intrinsic.index()),
-            Callable::Constructor(kind) => self.signatures.get(Intrinsic::all().count() + kind),
-        }
+        self.signatures.get(row(callable)?)
+    }
+
+    /// What is known of the inputs of an intrinsic or a constructor.
+    pub(crate) fn known(&self, callable: Callable) -> &[Known] {
+        row(callable).and_then(|row| self.known.get(row)).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The place of a signature among all of them.
+fn row(callable: Callable) -> Option<usize> {
+    match callable {
+        Callable::Node(..) => None,
+        Callable::Intrinsic(intrinsic) => Some(intrinsic.index()),
+        Callable::Constructor(kind) => Some(Intrinsic::all().count() + kind),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Options, compile};
+    use std::collections::HashMap;
+
+    const TEXT: &str = r#"
+let rock = image("rock.jpg")
+
+texture t(uv: vec2) -> (color: color) {
+    let mixed = mix(turbulence(uv), fbm(uv * 3.0, octaves: 2), noise(uv, seed: 7))
+    let again = noise(vec3(uv, fbm(uv)))
+    let turn  = rotation(again) * uv
+    color     = over(rock.hex_tile(turn) * mixed, hue(again))
+}
+"#;
+
+    #[test]
+    fn nodes_made_ahead_are_those_made_in_place() {
+        let files: HashMap<String, String> = [("t.tex".to_owned(), TEXT.to_owned())].into();
+        let library = Library::standard().unwrap();
+        assert!(!library.prepared.is_empty());
+        let plain = Library { prepared: FxHashMap::default(), ..library.clone() };
+        let [ahead, in_place] = [library, plain].map(|library| {
+            compile(&library, "t.tex", &files, &Options::default()).unwrap().program.texture().wgsl.clone()
+        });
+        assert_eq!(ahead, in_place);
     }
 }

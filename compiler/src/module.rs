@@ -3,6 +3,7 @@
 //! The compiler opens no file. A host hands text in through a [`Loader`].
 
 use crate::advice;
+use crate::check::{self, Known};
 use crate::diagnostic::{Diagnostic, Place, imports, syntax};
 use crate::library::Library;
 use std::collections::HashMap;
@@ -56,6 +57,8 @@ pub struct Module {
     pub path: String,
     /// Its tree.
     pub tree: Arc<File>,
+    /// What is known of the inputs of each item.
+    pub(crate) known: Arc<[Vec<Known>]>,
     /// What it imports, in source order.
     pub imports: Vec<Import>,
 }
@@ -191,6 +194,7 @@ impl Walk<'_> {
         self.modules.push(Module {
             file: open.file,
             path: open.path,
+            known: check::known_of_items(&open.tree).into(),
             tree: open.tree,
             imports: open.imports,
         });

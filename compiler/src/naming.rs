@@ -5,15 +5,21 @@
 //! replace them in the text it writes (see [`Names::apply`]).
 
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::ops::Range;
 
 /// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
 /// `_` (tools that import WGSL refuse it otherwise), no leading `_`.
 pub fn identifier(name: &str) -> String {
     let mut out = String::with_capacity(name.len() + 2);
-    for c in name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }) {
-        // Neither a leading `_` nor two of them side by side.
-        if c != '_' || !(out.is_empty() || out.ends_with('_')) {
+    let plain = name.bytes().take_while(u8::is_ascii_alphanumeric).count();
+    let (plain, rest) = name.split_at(plain);
+    out.push_str(plain);
+    for c in rest.chars() {
+        if c.is_ascii_alphanumeric() {
             out.push(c);
+        } else if !(out.is_empty() || out.ends_with('_')) {
+            // Neither a leading `_` nor two of them side by side.
+            out.push('_');
         }
     }
     if out.is_empty() || out.starts_with(|c: char| c.is_ascii_digit()) {
@@ -37,14 +43,15 @@ pub fn camel_case(name: &str) -> String {
     if camel.ends_with(|c: char| c.is_ascii_digit()) { format!("{camel}_") } else { camel }
 }
 
-/// `_b`, `_c`, … `_z`, `_ba`, …: suffixes without digits.
-fn suffix(mut n: usize) -> String {
-    let mut letters = Vec::new();
-    while n > 0 {
-        letters.push(b'a' + (n % 26) as u8);
-        n /= 26;
+const LETTERS: &[u8; 26] = b"abcdefghijklmnopqrstuvwxyz";
+const DIGITS: &[u8; 10] = b"0123456789";
+
+/// Writes a number in the system of these digits.
+fn push_number(text: &mut String, number: usize, digits: &[u8]) {
+    for place in (0..=number.checked_ilog(digits.len()).unwrap_or(0)).rev() {
+        let digit = number / digits.len().pow(place) % digits.len();
+        text.push(char::from(digits[digit]));
     }
-    letters.iter().rev().map(|c| char::from(*c)).collect()
 }
 
 /// The names of one scope: a module, a function, a struct.
@@ -69,24 +76,25 @@ impl Scope {
 
     /// The wished name, or one like it that is free here.
     pub fn name(&mut self, wish: &str) -> String {
-        let mut base = identifier(wish);
+        let mut name = identifier(wish);
         let module = !self.module.is_empty()
-            && base.strip_prefix(&self.module).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
-        if module || is_reserved(&base) {
-            base = format!("{base}_value");
+            && name.strip_prefix(&self.module).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
+        if module || is_reserved(&name) {
+            name.push_str("_value");
         }
-        let Some(mut tried) = self.taken.get(&base).copied() else {
-            self.taken.insert(base.clone(), 0);
-            return base;
-        };
-        let name = loop {
-            tried += 1;
-            let name = format!("{base}_{}", suffix(tried));
-            if !self.taken.contains_key(&name) {
-                break name;
+        if let Some(mut tried) = self.taken.get(&name).copied() {
+            let base = name.len();
+            while self.taken.contains_key(&name) {
+                // `_b`, `_c`, … `_z`, `_ba`, …: without digits.
+                tried += 1;
+                name.truncate(base);
+                name.push('_');
+                push_number(&mut name, tried, LETTERS);
             }
-        };
-        self.taken.insert(base, tried);
+            if let Some(last) = self.taken.get_mut(&name[..base]) {
+                *last = tried;
+            }
+        }
         self.taken.insert(name.clone(), 0);
         name
     }
@@ -147,20 +155,12 @@ impl Names {
     }
 
     fn push(&mut self, text: String, kind: Kind) -> String {
-        let number = self.0.len();
-        self.0.push(Name { text, kind });
         let mut placeholder = String::with_capacity(8);
         placeholder.push('z');
-        for place in (0..=number.checked_ilog10().unwrap_or(0)).rev() {
-            placeholder.push(char::from(b'0' + (number / 10_usize.pow(place) % 10) as u8));
-        }
+        push_number(&mut placeholder, self.0.len(), DIGITS);
         placeholder.push('z');
+        self.0.push(Name { text, kind });
         placeholder
-    }
-
-    fn get(&self, token: &str) -> Option<&Name> {
-        let number = token.strip_prefix('z')?.strip_suffix('z')?;
-        self.0.get(number.parse::<usize>().ok()?)
     }
 
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
@@ -172,20 +172,13 @@ impl Names {
         // What stands before `done` is in `out`.
         let mut done = 0;
         let mut at = 0;
-        while let Some(token) = next_name(text, at) {
-            at = token.end;
-            let (before, word) = (&text[done..token.start], &text[token]);
-            let Some(name) = self.get(word) else {
-                let number = word.strip_prefix("_e").and_then(|number| number.parse::<u32>().ok());
-                let result = number.and_then(|number| results.get(functions.wrapping_sub(1))?.get(&number));
-                if let Some(result) = result {
-                    out.extend([before, result]);
-                    done = at;
-                }
-                continue;
-            };
+        while let Some((place, token)) = next_token(text, at) {
+            at = place.end;
+            let before = &text[done..place.start];
+            let results = results.get(functions.wrapping_sub(1));
+            let Some((name, kind)) = self.meaning(token, results) else { continue };
             functions += usize::from(before.ends_with("fn "));
-            if let Some(before) = name.kind.undeclared(before)
+            if let Some(before) = kind.undeclared(before)
                 && let Some((_, behind)) = text[at..].split_once('\n')
             {
                 out.push_str(before.trim_end_matches(' '));
@@ -193,23 +186,75 @@ impl Names {
                 let behind = if out.ends_with("{\n") { behind.trim_start_matches('\n') } else { behind };
                 at = text.len() - behind.len();
             } else {
-                let is_first = name.kind == Kind::Stored && stored.insert(word);
-                out.extend([before, if is_first { "var " } else { "" }, &name.text]);
+                out.push_str(before);
+                if kind == Kind::Stored && stored.insert(&text[place]) {
+                    out.push_str("var ");
+                }
+                out.push_str(name);
             }
             done = at;
         }
         out.push_str(&text[done..]);
         out
     }
+
+    /// The name that a token stands for, and how it is declared.
+    fn meaning<'n>(
+        &'n self,
+        token: Token,
+        results: Option<&'n FxHashMap<u32, String>>,
+    ) -> Option<(&'n str, Kind)> {
+        match token {
+            Token::Placeholder(number) => self.0.get(number).map(|name| (name.text.as_str(), name.kind)),
+            Token::Result(number) => results?.get(&number).map(|name| (name.as_str(), Kind::Plain)),
+        }
+    }
 }
 
-/// The next word from `from` on that begins as placeholders or the writer's names of results do.
-fn next_name(text: &str, from: usize) -> Option<std::ops::Range<usize>> {
+/// A name in the text that is to be replaced.
+enum Token {
+    /// `z17z`
+    Placeholder(usize),
+    /// `_e7`
+    Result(u32),
+}
+
+/// The next one from `from` on, and where it stands.
+fn next_token(text: &str, from: usize) -> Option<(Range<usize>, Token)> {
     let bytes = text.as_bytes();
-    let is_part = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
-    let begins = |start: &usize| bytes[..*start].last().is_none_or(|before| !is_part(before));
-    let start = memchr::memchr2_iter(b'z', b'_', &bytes[from..]).map(|at| from + at).find(begins)?;
-    Some(start..start + bytes[start..].iter().take_while(|byte| is_part(byte)).count())
+    memchr::memchr2_iter(b'z', b'_', &bytes[from..]).find_map(|found| {
+        let start = from + found;
+        let (length, token) = token(&bytes[start..])?;
+        (!bytes[..start].last().is_some_and(is_part)).then_some((start..start + length, token))
+    })
+}
+
+/// The token that a text begins with, and its length.
+fn token(text: &[u8]) -> Option<(usize, Token)> {
+    let (numbered, is_placeholder) = match text {
+        [b'z', numbered @ ..] => (numbered, true),
+        [b'_', b'e', numbered @ ..] => (numbered, false),
+        _ => return None,
+    };
+    let digits = numbered.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let (digits, behind) = numbered.split_at(digits);
+    let behind = match behind {
+        [b'z', behind @ ..] if is_placeholder => behind,
+        behind if !is_placeholder => behind,
+        _ => return None,
+    };
+    if digits.is_empty() || behind.first().is_some_and(is_part) {
+        return None;
+    }
+    let add = |number: u32, digit: &u8| number.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
+    let number = digits.iter().fold(0, add);
+    let token = if is_placeholder { Token::Placeholder(number as usize) } else { Token::Result(number) };
+    Some((text.len() - behind.len(), token))
+}
+
+/// Whether a byte can stand in a name.
+fn is_part(byte: &u8) -> bool {
+    byte.is_ascii_alphanumeric() || *byte == b'_'
 }
 
 #[cfg(test)]

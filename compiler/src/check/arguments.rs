@@ -1,6 +1,7 @@
 //! Arguments to inputs: by position, by name, by default; dimensions bound; values converted.
 
 use super::call::accepts;
+use super::head::{Head, InputType, Known};
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;
 use super::{Checker, Frame};
@@ -41,19 +42,6 @@ pub type Arguments<'a> = SmallVec<[Given<'a>; 4]>;
 /// The argument of each input; none where the default stands.
 type Slots<'g, 'a> = SmallVec<[Option<&'g Given<'a>>; 8]>;
 
-/// The head of what is called.
-#[derive(Clone, Copy)]
-pub struct Head<'s> {
-    /// Its name, for messages.
-    pub name: &'s str,
-    /// Its dimension variables.
-    pub dims: &'s [Name],
-    /// Its inputs.
-    pub inputs: &'s [Input],
-    /// The module whose names its defaults see.
-    pub module: usize,
-}
-
 /// Inputs up to which all ways to exchange two arguments are tried.
 const MOST_EXCHANGED: usize = 8;
 
@@ -85,9 +73,9 @@ impl<'a> Checker<'a> {
         let mut bound = Bound { dims, wires: SmallVec::new(), places: SmallVec::new() };
         let mut complete = true;
         let said = self.diagnostics.len();
-        for (input, slot) in head.inputs.iter().zip(&slots) {
+        for ((input, known), slot) in head.inputs.iter().zip(head.known).zip(&slots) {
             let at = slot.map_or(place, |given| given.place);
-            let wire = self.argument(f, head, input, *slot, &bound, place);
+            let wire = self.argument(f, head, (input, known), *slot, &bound, place);
             complete &= !matches!(wire, Wire::Unknown);
             bound.wires.push(wire);
             bound.places.push(at);
@@ -213,12 +201,13 @@ impl<'a> Checker<'a> {
                 }
             }
             let mut from = place;
-            for (input, slot) in head.inputs.iter().zip(slots) {
-                let Some(given) =
-                    slot.filter(|_| types::dimension_variable(&input.ty) == Some(&variable.text))
-                else {
-                    continue;
+            for ((input, known), slot) in head.inputs.iter().zip(head.known).zip(slots) {
+                let varies = match known.ty {
+                    InputType::Same(_) => false,
+                    InputType::Wide(_, dim) => dim == i,
+                    InputType::Open => types::dimension_variable(&input.ty) == Some(&variable.text),
                 };
+                let Some(given) = slot.filter(|_| varies) else { continue };
                 let found = match given.wire {
                     Wire::Value(value) => f.builder.ty(value).width(),
                     _ => continue,
@@ -241,19 +230,35 @@ impl<'a> Checker<'a> {
         &mut self,
         f: &mut Frame<'a>,
         head: Head<'a>,
-        input: &'a Input,
+        (input, known): (&'a Input, &Known),
         slot: Option<&Given<'a>>,
         bound: &Bound<'a>,
         place: Place,
     ) -> Wire {
-        let declared = match types::resolve(&input.ty, &bound.dims, self.modules[head.module].file) {
-            Ok(declared) => declared,
-            Err(error) => return self.report(f, error),
+        let (width, resolved);
+        let declared = match &known.ty {
+            InputType::Same(declared) => declared,
+            InputType::Wide(scalar, dim) => {
+                width = bound.dims.get(*dim).map_or(1, |(_, width)| *width);
+                resolved = Declared::Vector(*scalar, width);
+                &resolved
+            }
+            InputType::Open => {
+                match types::resolve(&input.ty, &bound.dims, self.modules[head.module].file) {
+                    Ok(declared) => resolved = declared,
+                    Err(error) => return self.report(f, error),
+                }
+                &resolved
+            }
         };
         match (slot, &input.default) {
-            (Some(given), _) => self.coerce(f, &input.name.text, &declared, given),
+            (Some(given), _) => self.coerce(f, &input.name.text, declared, given),
             (None, Some(default)) => {
-                let input = (input.name.text.as_str(), &declared);
+                if let Some(constant) = known.default {
+                    f.builder.set_place(place);
+                    return Wire::Value(f.builder.constant(constant));
+                }
+                let input = (input.name.text.as_str(), declared);
                 self.default(f, head, default, bound, input, place)
             }
             (None, None) => Wire::Unknown,
@@ -427,6 +432,9 @@ impl<'a> Checker<'a> {
     ) -> Option<Value> {
         let value = self.value(f, wire, place)?;
         let ty = f.builder.ty(value);
+        if ty == Type::Vector(scalar, width) {
+            return Some(value);
+        }
         let fits = ty.scalar().is_some_and(|found| types::widens(found, scalar));
         if !fits || (ty.width() != 1 && ty.width() != width) {
             let wanted = types::name(Type::Vector(scalar, width));

@@ -1,6 +1,7 @@
 //! Calls: which node, intrinsic or constructor a name means, and what calling it gives.
 
-use super::arguments::{Arguments, Bound, Given, Head};
+use super::arguments::{Arguments, Bound, Given};
+use super::head::Head;
 use super::types;
 use super::view::view_of;
 use super::wire::{ArgumentKey, ImportedNodes, Key, Wire};
@@ -192,18 +193,21 @@ impl<'a> Checker<'a> {
                 name: &node.name.text,
                 dims: &node.dims,
                 inputs: &node.inputs,
+                known: self.modules[module].known.get(item).map_or(&[], Vec::as_slice),
                 module,
             }),
             Callable::Intrinsic(intrinsic) => library.signature(callable).map(|signature| Head {
                 name: intrinsic.row().name,
                 dims: &signature.dims,
                 inputs: &signature.inputs,
+                known: library.known(callable),
                 module: 0,
             }),
             Callable::Constructor(kind) => library.signature(callable).map(|signature| Head {
                 name: KINDS[kind].name,
                 dims: &signature.dims,
                 inputs: &signature.inputs,
+                known: library.known(callable),
                 module: 0,
             }),
         }

@@ -1,6 +1,7 @@
 //! Constructor calls: arguments that are known become a resource.
 
-use super::arguments::{Bound, Head};
+use super::arguments::Bound;
+use super::head::Head;
 use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};

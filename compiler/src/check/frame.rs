@@ -103,6 +103,23 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// Notes which step binds each name that is no input; false where one is bound twice.
+    pub(super) fn bind_steps(&mut self) -> bool {
+        let mut names = 0;
+        self.bound.reserve(self.steps.len());
+        for (i, step) in self.steps.iter().enumerate() {
+            for name in step.names() {
+                names += 1;
+                self.bound.entry(name).or_insert(i);
+            }
+        }
+        let mut is_once = self.bound.len() == names;
+        for input in self.node.iter().flat_map(|node| &node.inputs) {
+            is_once &= self.bound.remove(input.name.text.as_str()).is_none();
+        }
+        is_once
+    }
+
     /// The name of the node whose body is being made, whatever stands inside it.
     pub(super) fn function_name(&self) -> String {
         self.builder_of(0).function().name.clone()

@@ -122,6 +122,7 @@ impl<'a> Checker<'a> {
             if !f.steps.is_empty() {
                 // Params first, or a bake would decide the order of those it reads.
                 f.steps.sort_by_key(|step| !matches!(step.target, Target::Param(_)));
+                f.bind_steps();
                 self.sort(&mut f);
                 self.run(f);
             }

@@ -15,6 +15,7 @@ mod expr;
 mod fold;
 mod frame;
 mod globals;
+mod head;
 mod index;
 mod layer;
 mod matrix;
@@ -32,6 +33,7 @@ mod types;
 mod view;
 mod wire;
 
+pub use head::{Known, known, known_of_items};
 pub use prepared::{Prepared, prepare};
 pub use texture::textures;
 pub use wire::Key;
@@ -45,9 +47,10 @@ use crate::module::Module;
 use crate::resource::{KINDS, Resource};
 use frame::{Frame, Step, Target};
 use globals::Global;
+use operator::Overload;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
-use texgraph_grammar::syntax::{Expr, Input, ItemKind, Name, Node, Pattern, Span};
+use texgraph_grammar::syntax::{BinaryOperator, Expr, Input, ItemKind, Name, Node, Pattern, Span};
 use types::Declared;
 use wire::{ArgumentKey, NodeWire, ResourceWire, Wire};
 
@@ -67,6 +70,8 @@ pub struct Checker<'a> {
     /// The nodes and textures of each file by name.
     callables: Vec<FxHashMap<&'a str, Vec<Callable>>>,
     aliases: Vec<String>,
+    /// The rows of operators that were looked up, by the types of their operands.
+    overloads: FxHashMap<(BinaryOperator, Type, Type), Option<Overload>>,
     made: FxHashMap<Key, Outcome>,
     interned: FxHashMap<u64, Vec<FunctionId>>,
     functions: Vec<Function>,
@@ -109,6 +114,7 @@ impl<'a> Checker<'a> {
             globals: vec![FxHashMap::default(); modules.len()],
             callables: globals::all_callables(modules, library.modules().len()),
             aliases: globals::aliases(modules, library.modules().len()),
+            overloads: FxHashMap::default(),
             made: FxHashMap::default(),
             interned: FxHashMap::default(),
             functions: Vec::new(),
@@ -250,7 +256,9 @@ impl<'a> Checker<'a> {
     /// A frame with the inputs of its node in scope.
     fn frame(&mut self, node: &'a Node, key: Key, parent: Option<usize>) -> Frame<'a> {
         let mut f = Frame::empty();
-        f.builder = Builder::new(render::name_of(node, key.wire.as_deref()));
+        // A statement makes a few values.
+        let values = 4 * node.body.statements.len();
+        f.builder = Builder::with_capacity(render::name_of(node, key.wire.as_deref()), values);
         f.node = Some(node);
         f.module = key.module;
         f.parent = parent;

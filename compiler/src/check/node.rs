@@ -9,6 +9,7 @@ use super::{Checker, Frame};
 use crate::diagnostic::{Place, nodes};
 use crate::graph::{Builder, Constant, Scalar, Type, Value};
 use std::rc::Rc;
+use std::sync::Arc;
 use texgraph_grammar::syntax::{Expr, ExprKind, Name, Postfix};
 
 /// What is to become a node.
@@ -24,7 +25,7 @@ impl<'a> Checker<'a> {
         &mut self,
         f: &mut Frame<'a>,
         input: &str,
-        ty: &Rc<NodeType>,
+        ty: &Arc<NodeType>,
         given: &Given<'a>,
     ) -> Wire {
         let Some(source) = self.node_source(f, input, given) else { return Wire::Unknown };
@@ -98,7 +99,7 @@ impl<'a> Checker<'a> {
         &mut self,
         f: &mut Frame<'a>,
         input: &str,
-        ty: &Rc<NodeType>,
+        ty: &Arc<NodeType>,
         place: Place,
         make: impl FnOnce(&mut Self, &mut Frame<'a>, &[Given<'a>]) -> Wire,
     ) -> Wire {
@@ -126,7 +127,7 @@ impl<'a> Checker<'a> {
         match given {
             Some(_) => {
                 let function = self.intern(builder.finish());
-                Wire::Node(Rc::new(NodeWire { function, ty: Rc::clone(ty), captures }))
+                Wire::Node(Rc::new(NodeWire { function, ty: Arc::clone(ty), captures }))
             }
             None => Wire::Unknown,
         }

@@ -8,6 +8,9 @@ use crate::intrinsic::{Intrinsic, NEGATE, NEGATE_INT, NOT};
 use crate::library::Callable;
 use texgraph_grammar::syntax::{BinaryOperator, ChainLink, Expr, ExprKind, Span, UnaryOperator};
 
+/// A row of the intrinsic table, and the scalar that it takes.
+pub type Overload = (Intrinsic, Scalar);
+
 impl<'a> Checker<'a> {
     pub(super) fn unary(
         &mut self,
@@ -135,15 +138,19 @@ impl<'a> Checker<'a> {
         Some(f.builder.builtin(intrinsic, &operands))
     }
 
-    /// The row of an operator for operands of these types, and the scalar that it takes.
-    fn overload(&self, operator: BinaryOperator, left: Type, right: Type) -> Option<(Intrinsic, Scalar)> {
-        self.library.callables(operator.symbol()).iter().find_map(|callable| {
-            let Callable::Intrinsic(intrinsic) = callable else { return None };
-            let first = self.library.signature(*callable)?.inputs.first()?;
-            let scalar = types::scalar_of(&first.ty)?;
-            let fits = |ty: Type| ty.scalar().is_some_and(|found| types::widens(found, scalar));
-            (fits(left) && fits(right)).then_some((*intrinsic, scalar))
-        })
+    /// The row of an operator for operands of these types, looked up once.
+    fn overload(&mut self, operator: BinaryOperator, left: Type, right: Type) -> Option<Overload> {
+        let library = self.library;
+        let find = || {
+            library.callables(operator.symbol()).iter().find_map(|callable| {
+                let Callable::Intrinsic(intrinsic) = callable else { return None };
+                let first = library.signature(*callable)?.inputs.first()?;
+                let scalar = types::scalar_of(&first.ty)?;
+                let fits = |ty: Type| ty.scalar().is_some_and(|found| types::widens(found, scalar));
+                (fits(left) && fits(right)).then_some((*intrinsic, scalar))
+            })
+        };
+        *self.overloads.entry((operator, left, right)).or_insert_with(find)
     }
 
     fn accepted(&self, operator: BinaryOperator) -> Vec<String> {

@@ -4,7 +4,7 @@
 use super::wire::Wire;
 use super::{Checker, Frame, Step, Target, globals, order};
 use crate::diagnostic::names;
-use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 use texgraph_grammar::syntax::{Name, Node, Pattern, Span, Statement};
 
 /// Names of a function that were reported as unknown: each is reported once.
@@ -45,27 +45,20 @@ impl<'a> Checker<'a> {
         let head: Vec<&'a Name> = inputs.chain(node.outputs.iter().map(|output| &output.name)).collect();
         self.distinct(f, &head);
         f.steps.reserve(node.body.statements.len());
-        let mut bound = Vec::with_capacity(node.inputs.len() + node.body.statements.len());
-        bound.extend(node.inputs.iter().map(|input| &input.name));
-        let is_input = |name: &Name| node.inputs.iter().any(|input| input.name.text == name.text);
         for statement in &node.body.statements {
             match statement {
                 Statement::Let { pattern, value, .. } => {
-                    bound.extend(order::bound(statement));
                     f.steps.push(Step { target: Target::Let(pattern), value });
                 }
                 Statement::Assign { name, value } => {
                     self.assign(f, node, name);
-                    // That an output has the name of an input is said of the head, and that an
-                    // input is no output of the assignment.
-                    if !is_input(name) {
-                        bound.push(name);
-                    }
                     f.steps.push(Step { target: Target::Output(name), value });
                 }
             }
         }
-        self.distinct(f, &bound);
+        if !f.bind_steps() {
+            self.distinct(f, &bound(node));
+        }
         self.outputs_assigned(f, node);
         self.sort(f);
     }
@@ -109,7 +102,7 @@ impl<'a> Checker<'a> {
 
     /// Reports each name that stands twice; the first one holds.
     pub(super) fn distinct(&mut self, f: &mut Frame<'a>, bound: &[&'a Name]) {
-        let mut seen: FxHashMap<&str, &Name> = with_room(bound.len());
+        let mut seen: FxHashMap<&str, &Name> = FxHashMap::default();
         for name in bound {
             let first = *seen.entry(&name.text).or_insert(name);
             if first.span != name.span {
@@ -125,18 +118,9 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Puts the steps into an order that works. What stands in a ring is reported and comes in
-    /// any order: what else is wrong with it is found too.
+    /// Puts the steps, whose names are bound, into an order that works. What stands in a ring is
+    /// reported and comes in any order: what else is wrong with it is found too.
     pub(super) fn sort(&mut self, f: &mut Frame<'a>) {
-        let mut binder: FxHashMap<&str, usize> = with_room(f.steps.len());
-        for (i, step) in f.steps.iter().enumerate() {
-            for name in step.names() {
-                binder.entry(name).or_insert(i);
-            }
-        }
-        for input in f.node.iter().flat_map(|node| &node.inputs) {
-            binder.remove(input.name.text.as_str());
-        }
         let mut reach = (f.node.is_none()).then(|| globals::reach(&self.modules[f.module]));
         let mut free = order::Free::default();
         let mut needs = order::Needs::default();
@@ -147,9 +131,8 @@ impl<'a> Checker<'a> {
                 reach.values(free.calls.iter().chain(&free.values).copied().collect())
             });
             let names = free.values.iter().chain(through.iter().flatten());
-            needs.push(names.filter_map(|name| binder.get(name).copied()));
+            needs.push(names.filter_map(|name| f.bound.get(name).copied()));
         }
-        f.bound = binder;
         let (order, rings) = order::sort(&needs);
         f.order = order;
         for ring in rings {
@@ -176,9 +159,16 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// An empty map for that many.
-fn with_room<K, V>(entries: usize) -> FxHashMap<K, V> {
-    FxHashMap::with_capacity_and_hasher(entries, FxBuildHasher)
+/// The names that a node binds, inputs first.
+fn bound(node: &Node) -> Vec<&Name> {
+    let is_input = |name: &Name| node.inputs.iter().any(|input| input.name.text == name.text);
+    let statements = node.body.statements.iter().flat_map(|statement| match statement {
+        // That an output has the name of an input is said of the head, and that an input is no
+        // output of the assignment.
+        Statement::Assign { name, .. } if is_input(name) => &[],
+        statement => order::bound(statement),
+    });
+    node.inputs.iter().map(|input| &input.name).chain(statements).collect()
 }
 
 fn is_output(node: &Node, name: &Name) -> bool {

@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, Place, types};
 use crate::graph::{Scalar, Type};
 use crate::resource::{KINDS, LATER};
 use smallvec::SmallVec;
-use std::rc::Rc;
+use std::sync::Arc;
 use texgraph_grammar::syntax::{self, Dim, TypeKind};
 
 /// A declared type with its dimension variables bound.
@@ -18,7 +18,7 @@ pub enum Declared {
     /// A resource, by its row in the table of kinds.
     Resource(usize),
     /// A node.
-    Node(Rc<NodeType>),
+    Node(Arc<NodeType>),
     /// Inside a node's type only: several values with names.
     Record(Vec<(String, Declared)>),
     /// What a baked node gives: one to four floats.
@@ -126,7 +126,7 @@ pub fn resolve(ty: &syntax::Type, dims: &Dims<'_>, file: u32) -> Result<Declared
         TypeKind::Node { inputs, output } => {
             let inputs = fields(inputs, dims, file)?;
             let output = part(output, dims, file)?;
-            Ok(Declared::Node(Rc::new(NodeType { inputs, output })))
+            Ok(Declared::Node(Arc::new(NodeType { inputs, output })))
         }
         TypeKind::Record(_) => Err(types::type_not_allowed(place, "a record", "an input or output")),
     }

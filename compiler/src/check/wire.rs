@@ -6,6 +6,7 @@ use crate::graph::{Constant, FunctionId, Type, Value};
 use crate::library::Callable;
 use smallvec::SmallVec;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// What an expression gives.
 #[derive(Clone, Debug)]
@@ -57,7 +58,7 @@ pub struct NodeWire {
     /// The function.
     pub function: FunctionId,
     /// What it takes and gives.
-    pub ty: Rc<NodeType>,
+    pub ty: Arc<NodeType>,
     /// What it reads from where it was written, as values of the function being made.
     pub captures: Vec<Value>,
 }
