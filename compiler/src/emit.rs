@@ -6,7 +6,7 @@ use naga::back::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// What the writer writes otherwise than it is to stand there.
-const REPLACED: [(&str, &str); 6] = [
+const REPLACED: [(&str, &str); 5] = [
     // It breaks the line behind attributes.
     (") \nvar", ") var"),
     ("@fragment \n", "@fragment\n"),
@@ -15,8 +15,6 @@ const REPLACED: [(&str, &str); 6] = [
     ("340282350000000000000000000000000000000f", "3.4028234663852886e38f"),
     ("0.0000000000000000000000000000000000001f", "1e-37f"),
     ("100000000000000000000000000000000000000f", "1e38f"),
-    // What lowering takes for `mix`.
-    ("smoothstep(", "mix("),
 ];
 
 /// The module as WGSL.

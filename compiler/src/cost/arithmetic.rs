@@ -125,8 +125,9 @@ fn function(name: &str, scalar: Scalar, width: u32) -> Vec<(Kind, u32)> {
         "dot" => vec![dot],
         "length" => vec![dot, (Kind::Transcendental, 1)],
         "cross" => vec![(Kind::Add, 9)],
-        // a + t·(b - a)
-        "mix" => vec![(Kind::Add, 3 * width)],
+        "clamp" => vec![(Kind::Compare, 2 * width)],
+        // (x - low)/(high - low), clamped, and its cubic.
+        "smoothstep" => vec![(Kind::Divide, width), (Kind::Compare, 2 * width), (Kind::Add, 6 * width)],
         "min" | "max" | "sign" => vec![(Kind::Compare, width)],
         "floor" | "ceil" | "round" | "fract" | "abs" => vec![(plain, width)],
         _ => vec![(Kind::Transcendental, width)],

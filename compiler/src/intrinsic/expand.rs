@@ -29,6 +29,20 @@ impl<'a> Shape<'a> {
     fn call(&mut self, intrinsic: Intrinsic, arguments: &[Value]) -> Value {
         self.b.builtin(intrinsic, arguments)
     }
+
+    /// What is left to 1; of equal components it is worked out once.
+    fn rest(&mut self, t: Value) -> Value {
+        let scalar = match self.b.operation(t) {
+            Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => parts[0],
+            _ => {
+                let one = self.float(1.0);
+                return self.call(SUBTRACT, &[one, t]);
+            }
+        };
+        let one = self.b.constant(Constant::floats(&[1.0]));
+        let rest = self.call(SUBTRACT, &[one, scalar]);
+        self.b.splat(rest, self.width)
+    }
 }
 
 /// Where a number counts as 0; nowhere if it is the greater of something and a number that does not.
@@ -155,8 +169,26 @@ pub fn floor_int(b: &mut Builder, v: &[Value]) -> Value {
     b.builtin(TO_INT, &[whole])
 }
 
+/// a·(1 − t) + b·t to the letter: a shader may work its own `mix` out in another way.
+pub fn mix(b: &mut Builder, v: &[Value]) -> Value {
+    let mut s = Shape::of(b, v[0]);
+    let rest = s.rest(v[2]);
+    let first = s.call(MULTIPLY, &[v[0], rest]);
+    let second = s.call(MULTIPLY, &[v[1], v[2]]);
+    s.call(ADD, &[first, second])
+}
+
+/// Whether each component of `low` is less than that of `high` by `gap` or more, and both are known.
+fn in_order(b: &Builder, low: Value, high: Value, gap: f32) -> bool {
+    let (Some(low), Some(high)) = (b.as_constant(low), b.as_constant(high)) else { return false };
+    (0..usize::from(low.width())).all(|i| high.float(i) - low.float(i) >= gap)
+}
+
 /// min(max(x, low), high), which has a value for reversed bounds too.
 pub fn clamp(b: &mut Builder, v: &[Value]) -> Value {
+    if in_order(b, v[1], v[2], 0.0) {
+        return b.builtin(RAW_CLAMP, v);
+    }
     let raised = b.builtin(MAXIMUM, &[v[0], v[1]]);
     b.builtin(MINIMUM, &[raised, v[2]])
 }
@@ -169,6 +201,9 @@ pub fn clamp_int(b: &mut Builder, v: &[Value]) -> Value {
 
 /// The cubic between the bounds, a step where there is nothing between them.
 pub fn smoothstep(b: &mut Builder, v: &[Value]) -> Value {
+    if in_order(b, v[0], v[1], value::LEAST) {
+        return b.builtin(RAW_SMOOTHSTEP, v);
+    }
     let mut s = Shape::of(b, v[2]);
     let (zero, one) = (s.float(0.0), s.float(1.0));
     let span = s.call(SUBTRACT, &[v[1], v[0]]);

@@ -368,7 +368,7 @@ pub static TABLE: &[Row] = &[
         doc: "`a·(1 - t) + b·t`.",
         value: Float3(|a, b, t| a * (1.0 - t) + b * t),
         derivative: Rule(derivative::mix),
-        form: Function("mix"),
+        form: Expand(expand::mix),
     },
     Row {
         name: "step",
@@ -561,6 +561,22 @@ pub static TABLE: &[Row] = &[
         value: Whole(value::component),
         derivative: Rule(derivative::component),
         form: Expand(expand::component),
+    },
+    Row {
+        name: "(clamp)",
+        signature: "<n>(x: vec<n>, low: vec<n>, high: vec<n>) -> vec<n>",
+        doc: "The same where the bounds are in order.",
+        value: Float3(|x, low, high| x.max(low).min(high)),
+        derivative: Rule(derivative::clamp),
+        form: Function("clamp"),
+    },
+    Row {
+        name: "(smoothstep)",
+        signature: "<n>(low: vec<n>, high: vec<n>, x: vec<n>) -> vec<n>",
+        doc: "The same where the bounds are in order and apart.",
+        value: Float3(value::smoothstep),
+        derivative: Rule(derivative::smoothstep),
+        form: Function("smoothstep"),
     },
     Row {
         name: "(hash4)",
@@ -920,6 +936,10 @@ pub const CLAMP_INT: Intrinsic = find("clamp", 0);
 /// `clamp`
 pub const CLAMP: Intrinsic = find("clamp", 1);
 
+/// `clamp` with bounds in order
+pub const RAW_CLAMP: Intrinsic = find("(clamp)", 0);
+/// `smoothstep` with bounds in order and apart
+pub const RAW_SMOOTHSTEP: Intrinsic = find("(smoothstep)", 0);
 /// `mix`
 pub const MIX: Intrinsic = find("mix", 0);
 

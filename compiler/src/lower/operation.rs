@@ -365,11 +365,6 @@ fn binary(symbol: &str, ty: Type) -> BinaryOperator {
     }
 }
 
-/// What stands for `mix` until the text is written: naga makes the many overloads of `mix` anew twice
-/// for each use, which would be most of what compiling takes. This one has the same signature, plain
-/// overloads, and no other use: smoothsteps are expanded before lowering.
-pub const MIX: MathFunction = MathFunction::SmoothStep;
-
 /// The shader language's function of that name.
 fn math(name: &str) -> MathFunction {
     match name {
@@ -381,7 +376,8 @@ fn math(name: &str) -> MathFunction {
         "sign" => MathFunction::Sign,
         "min" => MathFunction::Min,
         "max" => MathFunction::Max,
-        "mix" => MIX,
+        "clamp" => MathFunction::Clamp,
+        "smoothstep" => MathFunction::SmoothStep,
         "sin" => MathFunction::Sin,
         "cos" => MathFunction::Cos,
         "asin" => MathFunction::Asin,
