@@ -7,7 +7,7 @@ use std::hash::{Hash, Hasher};
 /// An open hash table over an arena, which alone holds the operations.
 #[derive(Default)]
 pub struct Interner {
-    /// None, or a power of two of them, at most half of them used.
+    /// None, or a power of two of them from 2 on, at most half of them used.
     slots: Vec<Slot>,
     used: usize,
 }
@@ -34,7 +34,8 @@ pub struct Vacant(u32);
 impl Interner {
     /// With room for that many operations.
     pub fn with_capacity(operations: usize) -> Interner {
-        Interner { slots: vec![Slot::FREE; (operations * 2).next_power_of_two()], used: 0 }
+        let slots = if operations == 0 { 0 } else { (operations * 2).next_power_of_two() };
+        Interner { slots: vec![Slot::FREE; slots], used: 0 }
     }
 
     /// The value of an operation of the arena.
@@ -84,5 +85,23 @@ impl Interner {
             place += 1;
         }
         self.slots[place & mask] = slot;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Interner, Operation, Value};
+
+    #[test]
+    fn room_of_any_size_is_enough() {
+        for room in 0..5 {
+            let mut interner = Interner::with_capacity(room);
+            let arena: Vec<Operation> = (0..40).map(Operation::Input).collect();
+            for (n, operation) in (0..).zip(&arena) {
+                let vacant = interner.find(operation, &arena).err().expect("it is new");
+                interner.insert(vacant, Value(n));
+                assert_eq!(interner.find(operation, &arena).ok(), Some(Value(n)), "room {room}");
+            }
+        }
     }
 }
