@@ -9,6 +9,7 @@ use generated::features::Features;
 use generated::judge::{self, Depth, Outcome};
 use generated::mutant::{mutant, tokens};
 use generated::program::{Known, Program, program};
+use std::path::Path;
 use texgraph_compiler::Library;
 use texgraph_compiler::intrinsic::Intrinsic;
 
@@ -142,6 +143,20 @@ fn mutants_break_nothing() {
         }
     }
     assert!(parsed > 200, "{parsed} of 1,500 mutants parse: the edits are too coarse");
+}
+
+/// Programs that once were refused or worse, as small as they go.
+#[test]
+fn what_was_found_stays_right() {
+    let library = library();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/generated/found");
+    for entry in std::fs::read_dir(folder).expect("there is a folder") {
+        let path = entry.expect("it can be read").path();
+        let text = std::fs::read_to_string(&path).expect("it can be read");
+        let name = path.display().to_string();
+        let files = [("main.tex".to_owned(), text)].into();
+        judged(&library, &name, &Program { files, main: "main.tex".to_owned() });
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::shape::without_places;
 use texgraph_compiler::diagnostic::render;
 use texgraph_compiler::module::Loader;
-use texgraph_compiler::{Failure, Form, Library, Options, check, compile, textures};
+use texgraph_compiler::{Failure, Form, Library, Options, Pass, Program, check, compile, textures};
 use texgraph_grammar::{format, parse};
 
 /// The code of what is our bug: naga refused what was made of a program that checked.
@@ -67,9 +67,9 @@ pub fn formats(text: &str, depth: Depth) -> Result<bool, String> {
     Ok(true)
 }
 
-/// Checks a program, and compiles every texture, all but the first in one form only where not
-/// everything is looked at. With `strict` an error is a failure; else only what says that the
-/// compiler is at fault.
+/// Checks a program, and compiles every texture in every form; where not everything is looked at, in
+/// the complete form, and the first texture in one more. With `strict` an error is a failure; else
+/// only what says that the compiler is at fault.
 ///
 /// # Errors
 /// What is wrong, with its page.
@@ -87,24 +87,21 @@ pub fn compiles(
     let textures = textures(library, main, loader).map_err(|failure| page(&failure))?;
     let mut shaders = Vec::new();
     for (i, texture) in textures.iter().enumerate() {
-        let forms = if i == 0 || depth == Depth::Whole { 2 } else { 1 };
-        for form in [Form::Complete, Form::Library].into_iter().take(forms) {
+        // Either, by and by.
+        let other = if texture.len() % 2 == 0 { Form::Library } else { Form::Functions };
+        let forms = match depth {
+            Depth::Whole => vec![Form::Complete, Form::Library, Form::Functions],
+            Depth::Most if i == 0 => vec![Form::Complete, other],
+            Depth::Most => vec![Form::Complete],
+        };
+        for form in forms {
             let options = Options { texture: Some(texture.clone()), form, ..Options::default() };
             match compile(library, main, loader, &options) {
-                Ok(compiled) => {
-                    let program = compiled.program;
-                    for (i, pass) in program.passes.iter().enumerate() {
-                        shaders.push(Shader {
-                            name: format!("{texture}.{form:?}.{i}"),
-                            wgsl: pass.wgsl.clone(),
-                            manifest: program.manifest.to_ron(),
-                        });
-                    }
-                }
+                Ok(compiled) => shaders.extend(shaders_of(&compiled.program, texture, form)),
                 Err(failure) => {
                     let ours = failure.diagnostics.iter().any(|d| d.code == OURS);
-                    let page = page(&failure);
                     if strict || ours {
+                        let page = page(&failure);
                         return Err(format!("checks, but {texture} does not compile:\n{page}"));
                     }
                 }
@@ -113,6 +110,15 @@ pub fn compiles(
     }
     shaders.iter().try_for_each(reads_back)?;
     Ok(Outcome::Shaders(shaders))
+}
+
+fn shaders_of(program: &Program, texture: &str, form: Form) -> Vec<Shader> {
+    let shader = |(i, pass): (usize, &Pass)| Shader {
+        name: format!("{texture}.{form:?}.{i}"),
+        wgsl: pass.wgsl.clone(),
+        manifest: program.manifest.to_ron(),
+    };
+    program.passes.iter().enumerate().map(shader).collect()
 }
 
 /// naga's own front end reads the shader, and finds nothing wrong with it.

@@ -131,7 +131,8 @@ impl<'a> Checker<'a> {
                 Postfix::Index(index, span) => self.index(f, wire.clone(), place, index, *span),
             };
             if f.waiting.len() > waiting {
-                if f.foreign == 0 && !matches!(wire, Wire::Unknown) {
+                // While something waits, folds do, and lists of them are to be made again.
+                if f.foreign == 0 && waiting == 0 && !matches!(wire, Wire::Unknown) {
                     f.progress.insert(links.as_ptr(), (next, wire));
                 }
                 return Wire::Unknown;

@@ -9,7 +9,7 @@ use super::wire::Wire;
 use super::{Checker, Frame, types};
 use crate::diagnostic::{Place, folds, limits, names, types as errors};
 use crate::graph::evaluate::{Stopped, evaluate};
-use crate::graph::{self, Builder, Function, FunctionId, Scalar, Type, Value};
+use crate::graph::{self, Builder, Constant, Function, FunctionId, Scalar, Type, Value};
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Fold, Name, Pattern, Span, Statement};
@@ -169,15 +169,17 @@ impl<'a> Checker<'a> {
 
     /// The accumulators after the last step: numbers where all is known.
     fn fold_results(&mut self, f: &mut Frame<'a>, fold: graph::Fold, place: Place) -> Option<Vec<Value>> {
+        // Views may be captured for `given` alone; a fold that reads one is found not to be constant.
+        let is_view = |value: Value| f.builder.ty(value).scalar().is_none();
         let mut known = true;
-        fold.for_operands(|value| known &= f.builder.as_constant(value).is_some());
+        fold.for_operands(|value| known &= f.builder.as_constant(value).is_some() || is_view(value));
         if !known {
             return Some(f.builder.fold(fold));
         }
         let mut alone = Builder::new("fold");
         let inside = fold.map_operands(|value| match f.builder.as_constant(value) {
             Some(constant) => alone.constant(constant),
-            None => value,
+            None => alone.constant(Constant::ints(&[0])),
         });
         for (i, value) in alone.fold(inside).into_iter().enumerate() {
             alone.output(format!("o{i}"), value);

@@ -85,6 +85,10 @@ impl Lowering<'_> {
                 members.push((offset, slot.name.clone(), slot.ty));
             }
         }
+        // A bake has none of its texture's inputs.
+        if members.is_empty() {
+            return None;
+        }
         members.sort_by_key(|(offset, ..)| *offset);
         let fields = members
             .iter()

@@ -210,7 +210,10 @@ impl<'a> Rewriting<'a> {
         for (old, operation) in function.iter() {
             let value = match operation {
                 Operation::Input(i) => inputs.get(*i as usize).copied().unwrap_or(Value(0)),
-                _ if live.is_live(self.place, old) => self.copy(old, operation),
+                // A view that nobody samples is passed on nevertheless: there is no 0 of its type.
+                _ if live.is_live(self.place, old) || function.ty(old).scalar().is_none() => {
+                    self.copy(old, operation)
+                }
                 _ => Value(0),
             };
             self.values.push(value);
