@@ -37,7 +37,7 @@ fn component(name: &str, x: impl Fn(usize) -> f64) -> Vec<f64> {
             let quotient = quotient(x(0), x(1));
             vec![quotient, x(1) * quotient.floor()]
         }
-        // By either of the two formulas that WGSL gives, or for t = 1/2 by half the sum.
+        // A shader's compiler may take t out, and for t = 1/2 half the sum.
         "mix" => {
             vec![x(0) * (1.0 - x(2)), x(1) * x(2), (x(1) - x(0)) * x(2), x(1) - x(0), x(1) + x(0)]
         }

@@ -366,7 +366,7 @@ pub static TABLE: &[Row] = &[
         name: "mix",
         signature: "<n>(a: vec<n>, b: vec<n>, t: vec<n>) -> vec<n>",
         doc: "`a·(1 - t) + b·t`.",
-        value: Float3(|a, b, t| a * (1.0 - t) + b * t),
+        value: Float3(value::mix),
         derivative: Rule(derivative::mix),
         form: Expand(expand::mix),
     },

@@ -106,6 +106,11 @@ pub fn logarithm(log: fn(f32) -> f32, x: f32) -> f32 {
     if x < LEAST { 0.0 } else { log(x) }
 }
 
+/// a·(1 − t) + b·t
+pub fn mix(a: f32, b: f32, t: f32) -> f32 {
+    finite(a * (1.0 - t)) + finite(b * t)
+}
+
 /// 0 left of `low`, 1 right of `high`, smooth between; a step where their difference counts as 0.
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     if (high - low).abs() < LEAST {
