@@ -98,7 +98,7 @@ mod tests {
             let mut interner = Interner::with_capacity(room);
             let arena: Vec<Operation> = (0..40).map(Operation::Input).collect();
             for (n, operation) in (0..).zip(&arena) {
-                let vacant = interner.find(operation, &arena).err().expect("it is new");
+                let vacant = interner.find(operation, &arena).expect_err("it is new");
                 interner.insert(vacant, Value(n));
                 assert_eq!(interner.find(operation, &arena).ok(), Some(Value(n)), "room {room}");
             }
