@@ -93,7 +93,11 @@ impl Emitter {
         let [space, comment] = ["WHITESPACE", "COMMENT"].map(|name| Expr::Ident(name.to_owned()));
         let either = Expr::Rep(Box::new(Expr::Choice(Box::new(space), Box::new(comment))));
         let code = self.expr(&either, mode)?;
-        Ok(format!("fn skip(&mut self) -> bool {{ let from = self.at; {code}; self.skipped(from) }}\n"))
+        let begins = next_is(first(&self.rules, &either, false).bytes);
+        Ok(format!(
+            "#[inline] fn skip(&mut self) -> bool {{ !{begins} || self.skip_some() }}\n\
+             fn skip_some(&mut self) -> bool {{ let from = self.at; {code}; self.skipped(from) }}\n"
+        ))
     }
 
     fn function(&mut self, (name, mode): &Key) -> Result<String, String> {

@@ -162,7 +162,7 @@ fn in_words(rule: Rule) -> Option<(u8, &'static str)> {
         Rule::input | Rule::name | Rule::field | Rule::inner_field => (1, "a name"),
         Rule::accumulator | Rule::pattern => (1, "a name"),
         Rule::ty | Rule::inner_type | Rule::inner_output | Rule::signature_output => (1, "a type"),
-        Rule::expr | Rule::unary | Rule::postfix | Rule::argument => (1, "an expression"),
+        Rule::expr | Rule::postfix | Rule::argument => (1, "an expression"),
         Rule::range => (1, "a range"),
         Rule::text => (1, "a string"),
         Rule::equals => (2, "`=`"),

@@ -72,13 +72,17 @@ impl<'s> Scan<'s> {
 const SYMBOLS: [&str; 17] =
     ["..=", "..", "->", "=>", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "*=", "/=", "::", "++", "**"];
 
+/// What follows the first character of those.
+const SECOND: &[u8] = b".>=&|:+*";
+
 /// Scans a text of at most [`MAX_BYTES`] bytes.
 pub(crate) fn scan(source: &str) -> Result<Scan<'_>, SyntaxError> {
     if source.len() > MAX_BYTES {
         let kind = SyntaxErrorKind::FileTooLarge { bytes: source.len() };
         return Err(SyntaxError::new(kind, beyond_limit(source)));
     }
-    let scan = Scan { source, tokens: Vec::new(), comments: Vec::new(), errors: Vec::new() };
+    let tokens = Vec::with_capacity(source.len() / 4);
+    let scan = Scan { source, tokens, comments: Vec::new(), errors: Vec::new() };
     let mut scanner = Scanner { scan, bytes: source.as_bytes(), at: 0 };
     while scanner.at < scanner.bytes.len() {
         scanner.step();
@@ -241,7 +245,9 @@ impl Scanner<'_> {
     }
 
     fn symbol(&mut self) {
-        if let Some(symbol) = SYMBOLS.iter().find(|symbol| self.looking_at(symbol)) {
+        // Most marks are single.
+        let is_long = SECOND.contains(&self.byte(1));
+        if is_long && let Some(symbol) = SYMBOLS.iter().find(|symbol| self.looking_at(symbol)) {
             return self.mark(TokenKind::Symbol, symbol.len());
         }
         let rest = &self.scan.source[self.at..];

@@ -38,7 +38,7 @@ impl<'s> Builder<'s> {
     /// precedences rise.
     pub(super) fn expr(&mut self, pair: Pair<'s>) -> Built<Expr> {
         let mut parts = self.parts_of(pair);
-        let mut operand = self.next_unary(&mut parts)?;
+        let mut operand = self.unary(&mut parts)?;
         let mut open: Vec<OpenChain> = Vec::new();
         while let Some(sign) = parts.next() {
             let operator = self.operator(sign)?;
@@ -46,7 +46,7 @@ impl<'s> Builder<'s> {
             while let Some(chain) = open.pop_if(|chain| chain.operator.precedence() > operator.precedence()) {
                 operand = chain.finish(operand);
             }
-            let next = self.next_unary(&mut parts)?;
+            let next = self.unary(&mut parts)?;
             let left = std::mem::replace(&mut operand, next);
             match open.last_mut() {
                 Some(chain) if chain.operator.precedence() == operator.precedence() => {
@@ -87,15 +87,14 @@ impl<'s> Builder<'s> {
         operator.ok_or_else(|| self.missing("an operator"))
     }
 
-    fn next_unary(&mut self, parts: &mut Parts<'s>) -> Built<Expr> {
-        let pair = self.next(parts, "an operand")?;
-        let mut parts = self.parts_of(pair);
+    /// The next operand, with the prefixes before it.
+    fn unary(&mut self, parts: &mut Parts<'s>) -> Built<Expr> {
         let mut operators = Vec::new();
         while let Some(prefix) = parts.accept(Rule::prefix) {
             let operator = if prefix.text == "-" { UnaryOperator::Negate } else { UnaryOperator::Not };
             operators.push((operator, prefix.span));
         }
-        let operand = self.next(&mut parts, "an operand")?;
+        let operand = self.next(parts, "an operand")?;
         let operand = self.postfix(operand)?;
         let Some((_, first)) = operators.first() else {
             return Ok(operand);

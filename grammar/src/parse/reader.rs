@@ -43,13 +43,14 @@ pub(super) fn signature(text: &str) -> Option<Vec<Step>> {
 }
 
 fn read(text: &str, rule: fn(&mut Reader<'_>) -> bool) -> Option<Vec<Step>> {
-    let steps = Vec::with_capacity(text.len() / 3);
+    let steps = Vec::with_capacity(text.len() / 2);
     let mut reader = Reader { text: text.as_bytes(), at: 0, gap: (0, 0), steps };
     rule(&mut reader).then_some(reader.steps)
 }
 
 impl Reader<'_> {
     /// The next byte; 0 at the end.
+    #[inline]
     fn peek(&self) -> u8 {
         self.text.get(self.at).copied().unwrap_or(0)
     }
@@ -65,6 +66,7 @@ impl Reader<'_> {
     }
 
     /// Takes a word.
+    #[inline]
     fn word(&mut self, word: &[u8]) -> bool {
         let is_there = self.text.get(self.at..).is_some_and(|rest| rest.starts_with(word));
         self.at += if is_there { word.len() } else { 0 };
