@@ -73,14 +73,14 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
     let mut next = options.first_binding;
     // Global names are public: they are chosen here, apart from each other, and lowering keeps away.
     let mut scope = Scope::default();
-    let entry_point = scope.name(&match options.form {
-        Form::Complete => format!("{name}_fragment"),
-        Form::Library | Form::Functions => name.clone(),
-    });
+    let entry_point = match options.form {
+        Form::Complete => scope.name(&format!("{name}_fragment")),
+        Form::Library | Form::Functions => scope.name(&name),
+    };
     let uniform = (block.size > 0).then(|| {
         next += 1;
         Uniform {
-            name: scope.name(&format!("{name}_params")),
+            name: scope.name(&format!("{name}_params")).to_string(),
             group: options.group,
             binding: options.first_binding,
             size: block.size.next_multiple_of(16),
@@ -92,7 +92,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
     let passes = graphs.iter().zip(&each).map(|(PassGraph { graph: pass, bake }, reads)| {
         let function = pass.function(pass.entry());
         let shader = match bake {
-            Some(_) => files.name(&format!("{}_{}", entry.name, function.name)),
+            Some(_) => files.name(&format!("{}_{}", entry.name, function.name)).to_string(),
             None => entry.name.clone(),
         };
         Pass {
@@ -103,7 +103,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
             shader: format!("{shader}.wgsl"),
             entry_point: match bake {
                 Some(_) => format!("{}_fragment", naming::identifier(&shader)),
-                None => entry_point.clone(),
+                None => entry_point.to_string(),
             },
             call: (bake.is_none() && options.form == Form::Functions).then(|| call(graph, function, reads)),
             gradients: gradients(function),
@@ -160,7 +160,7 @@ fn call(graph: &Graph, entry: &graph::Function, reads: &Reads) -> Call {
         }
     }
     let mut members = Scope::default();
-    let members = entry.outputs.iter().map(|(slot, _)| members.name(&slot.name)).collect();
+    let members = entry.outputs.iter().map(|(slot, _)| members.name(&slot.name).to_string()).collect();
     Call { arguments, members: (entry.outputs.len() > 1).then_some(members) }
 }
 
@@ -271,7 +271,7 @@ fn resources(
         let name = format!("{prefix}_{}", naming::identifier(&resource.name));
         all[view.resource as usize].textures.push(Texture {
             field: view.field.to_owned(),
-            name: scope.name(&format!("{name}_{}", view.field)),
+            name: scope.name(&format!("{name}_{}", view.field)).to_string(),
             group,
             binding: next(),
             view: match view.view.dimension {
@@ -284,7 +284,7 @@ fn resources(
                 graph::Texel::Integer => SampleKind::Int,
             },
             sampler: resource.sampler.map(|state| Sampler {
-                name: scope.name(&format!("{name}_sampler")),
+                name: scope.name(&format!("{name}_sampler")).to_string(),
                 group,
                 binding: next(),
                 wrap: state.wrap,

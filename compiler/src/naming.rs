@@ -5,11 +5,15 @@
 //! replace them in the text it writes (see [`Names::apply`]).
 
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::{SmolStr, format_smolstr};
 use std::ops::Range;
 
 /// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
 /// `_` (tools that import WGSL refuse it otherwise), no leading `_`.
-pub fn identifier(name: &str) -> String {
+pub fn identifier(name: &str) -> SmolStr {
+    if is_identifier(name) {
+        return name.into();
+    }
     let mut out = String::with_capacity(name.len() + 2);
     let plain = name.bytes().take_while(u8::is_ascii_alphanumeric).count();
     let (plain, rest) = name.split_at(plain);
@@ -28,7 +32,15 @@ pub fn identifier(name: &str) -> String {
     if out.ends_with(|c: char| c.is_ascii_digit()) {
         out.push('_');
     }
-    out
+    out.into()
+}
+
+/// Whether nothing has to be changed.
+fn is_identifier(name: &str) -> bool {
+    let bytes = name.as_bytes();
+    let ends = bytes.first().is_some_and(u8::is_ascii_alphabetic)
+        && bytes.last().is_some_and(|byte| byte.is_ascii_alphabetic());
+    ends && bytes.iter().all(is_part) && !name.contains("__")
 }
 
 /// `tile_map` as `TileMap`.
@@ -58,7 +70,7 @@ fn push_number(text: &mut String, number: usize, digits: &[u8]) {
 #[derive(Default, Clone)]
 pub struct Scope {
     /// The names taken, each with how many suffixes of it have been tried.
-    taken: FxHashMap<String, usize>,
+    taken: FxHashMap<SmolStr, usize>,
     /// Names beginning with this belong to the module.
     module: String,
 }
@@ -71,32 +83,33 @@ impl Scope {
 
     /// Takes a name that was chosen elsewhere.
     pub fn take(&mut self, name: &str) {
-        self.taken.entry(name.to_owned()).or_insert(0);
+        self.taken.entry(name.into()).or_insert(0);
     }
 
     /// The wished name, or one like it that is free here.
-    pub fn name(&mut self, wish: &str) -> String {
-        let mut name = identifier(wish);
-        let module = !self.module.is_empty()
-            && name.strip_prefix(&self.module).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
-        if module || is_reserved(&name) {
-            name.push_str("_value");
-        }
-        if let Some(mut tried) = self.taken.get(&name).copied() {
-            let base = name.len();
-            while self.taken.contains_key(&name) {
-                // `_b`, `_c`, … `_z`, `_ba`, …: without digits.
-                tried += 1;
-                name.truncate(base);
-                name.push('_');
-                push_number(&mut name, tried, LETTERS);
-            }
-            if let Some(last) = self.taken.get_mut(&name[..base]) {
-                *last = tried;
-            }
-        }
+    pub fn name(&mut self, wish: &str) -> SmolStr {
+        let name = self.free(identifier(wish));
         self.taken.insert(name.clone(), 0);
         name
+    }
+
+    /// The name, or one like it that is free.
+    fn free(&mut self, name: SmolStr) -> SmolStr {
+        let module = !self.module.is_empty()
+            && name.strip_prefix(&self.module).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
+        let name = if module || is_reserved(&name) { format_smolstr!("{name}_value") } else { name };
+        let Some(mut tried) = self.taken.get(&name).copied() else { return name };
+        let mut other = String::with_capacity(name.len() + 4);
+        other.push_str(&name);
+        while self.taken.contains_key(other.as_str()) {
+            // `_b`, `_c`, … `_z`, `_ba`, …: without digits.
+            tried += 1;
+            other.truncate(name.len());
+            other.push('_');
+            push_number(&mut other, tried, LETTERS);
+        }
+        self.taken.insert(name, tried);
+        other.into()
     }
 }
 
@@ -111,7 +124,7 @@ pub struct Names(Vec<Name>);
 
 /// What a placeholder stands for.
 struct Name {
-    text: String,
+    text: SmolStr,
     kind: Kind,
 }
 
@@ -139,22 +152,22 @@ impl Kind {
 
 impl Names {
     /// A placeholder for a final name.
-    pub fn placeholder(&mut self, name: String) -> String {
-        self.push(name, Kind::Plain)
+    pub fn placeholder(&mut self, name: impl Into<SmolStr>) -> String {
+        self.push(name.into(), Kind::Plain)
     }
 
     /// A placeholder for what has a final name already, such as the value of a variable.
-    pub fn alias(&mut self, name: String) -> String {
-        self.push(name, Kind::Alias)
+    pub fn alias(&mut self, name: impl Into<SmolStr>) -> String {
+        self.push(name.into(), Kind::Alias)
     }
 
     /// A placeholder for a variable that is stored to in the block that all its uses are in, before
     /// any of them: it is declared there.
-    pub fn stored(&mut self, name: String) -> String {
-        self.push(name, Kind::Stored)
+    pub fn stored(&mut self, name: impl Into<SmolStr>) -> String {
+        self.push(name.into(), Kind::Stored)
     }
 
-    fn push(&mut self, text: String, kind: Kind) -> String {
+    fn push(&mut self, text: SmolStr, kind: Kind) -> String {
         let mut placeholder = String::with_capacity(8);
         placeholder.push('z');
         push_number(&mut placeholder, self.0.len(), DIGITS);
@@ -165,7 +178,7 @@ impl Names {
 
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
     /// nth function, which the writer names itself.
-    pub fn apply(&self, text: &str, results: &[FxHashMap<u32, String>]) -> String {
+    pub fn apply(&self, text: &str, results: &[FxHashMap<u32, SmolStr>]) -> String {
         let mut out = String::with_capacity(text.len() * 3 / 2);
         let mut functions = 0_usize;
         let mut stored = FxHashSet::default();
@@ -202,7 +215,7 @@ impl Names {
     fn meaning<'n>(
         &'n self,
         token: Token,
-        results: Option<&'n FxHashMap<u32, String>>,
+        results: Option<&'n FxHashMap<u32, SmolStr>>,
     ) -> Option<(&'n str, Kind)> {
         match token {
             Token::Placeholder(number) => self.0.get(number).map(|name| (name.text.as_str(), name.kind)),
@@ -278,8 +291,8 @@ mod tests {
     #[test]
     fn placeholders_become_names_and_numbers_stay() {
         let mut names = Names::default();
-        let cell = names.placeholder("cell".to_owned());
-        let at = names.placeholder("at".to_owned());
+        let cell = names.placeholder("cell");
+        let at = names.placeholder("at");
         let text = format!("let {cell} = 1e-3f + {at}.x * 0x1fu;");
         assert_eq!(names.apply(&text, &[]), "let cell = 1e-3f + at.x * 0x1fu;");
     }
@@ -287,9 +300,9 @@ mod tests {
     #[test]
     fn aliases_are_written_as_what_they_stand_for() {
         let mut names = Names::default();
-        let variable = names.placeholder("sum".to_owned());
-        let value = names.alias("sum".to_owned());
-        let next = names.placeholder("next".to_owned());
+        let variable = names.placeholder("sum");
+        let value = names.alias("sum");
+        let next = names.placeholder("next");
         let text = format!("{{\n    let {value} = {variable};\n    let {next} = {value} + 1;\n}}\n");
         assert_eq!(names.apply(&text, &[]), "{\n    let next = sum + 1;\n}\n");
     }
@@ -297,7 +310,7 @@ mod tests {
     #[test]
     fn variables_are_declared_where_they_are_first_stored_to() {
         let mut names = Names::default();
-        let sum = names.stored("sum".to_owned());
+        let sum = names.stored("sum");
         let text = format!("{{\n    var {sum}: f32;\n\n    {sum} = 1f;\n    {sum} = {sum} + 1f;\n}}\n");
         assert_eq!(names.apply(&text, &[]), "{\n    var sum = 1f;\n    sum = sum + 1f;\n}\n");
     }

@@ -4,6 +4,7 @@ use crate::graph::{ParamId, ViewId};
 use crate::naming::{Names, Scope};
 use naga::{BinaryOperator, Block, Expression, Handle, Literal, Scalar, Span, Statement};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 /// The expressions and statements of a naga function, the names taken in it, and where it finds
 /// what is not computed.
@@ -25,13 +26,13 @@ pub struct Body<'f> {
 }
 
 /// The names of calls' results in one function, by the number that the text writer gives each.
-pub type Results = FxHashMap<u32, String>;
+pub type Results = FxHashMap<u32, SmolStr>;
 
 /// A variable of a function.
 #[derive(Clone)]
 pub struct Variable {
     handle: Handle<naga::LocalVariable>,
-    name: String,
+    name: SmolStr,
 }
 
 impl Variable {
@@ -174,7 +175,7 @@ impl<'f> Body<'f> {
         variable
     }
 
-    fn declare(&mut self, placeholder: String, name: String, ty: Handle<naga::Type>) -> Variable {
+    fn declare(&mut self, placeholder: String, name: SmolStr, ty: Handle<naga::Type>) -> Variable {
         let variable = naga::LocalVariable { name: Some(placeholder), ty, init: None };
         Variable { handle: self.function.local_variables.append(variable, Span::UNDEFINED), name }
     }

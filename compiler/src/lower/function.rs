@@ -20,7 +20,7 @@ impl Lowering<'_> {
         let reads = self.reads[index].clone();
         let is_entry = FunctionId(index as u32) == graph.entry();
         let name = match self.manifest.form {
-            Form::Functions if is_entry => public.to_owned(),
+            Form::Functions if is_entry => public.into(),
             _ => self.module_name(if is_entry { "texture" } else { &source.name }),
         };
         let mut scope = Scope::inside(&self.prefix);
@@ -61,8 +61,11 @@ impl Lowering<'_> {
             [single] => *single,
             _ => {
                 let members = source.outputs.iter().zip(types);
-                let members =
-                    members.map(|((slot, _), ty)| Member { name: slot.name.clone(), ty, binding: None });
+                let members = members.map(|((slot, _), ty)| Member {
+                    name: slot.name.as_str().into(),
+                    ty,
+                    binding: None,
+                });
                 self.structure(&camel_case(name), members.collect())
             }
         }

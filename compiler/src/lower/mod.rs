@@ -26,6 +26,7 @@ use crate::naming::{self, Names, Scope};
 use body::Results;
 use naga::{Handle, Span};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use types::Types;
@@ -64,7 +65,7 @@ struct Lowering<'a> {
     names: Names,
     /// Names of the module's own things.
     scope: Scope,
-    prefix: String,
+    prefix: SmolStr,
     weights: Weights,
     /// What each function of the graph reads beside its inputs: its further arguments, in order.
     reads: Vec<Reads>,
@@ -111,7 +112,7 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
 
 impl Lowering<'_> {
     /// A module-level name that begins with the texture's.
-    fn module_name(&mut self, wish: &str) -> String {
+    fn module_name(&mut self, wish: &str) -> SmolStr {
         let full = format!("{}_{}", self.prefix, naming::identifier(wish));
         self.scope.name(&full)
     }
@@ -166,7 +167,7 @@ fn in_place(graph: &Graph) -> BTreeSet<usize> {
 
 /// A member of a struct in the making.
 struct Member {
-    name: String,
+    name: SmolStr,
     ty: Handle<naga::Type>,
     binding: Option<naga::Binding>,
 }

@@ -62,7 +62,7 @@ impl Lowering<'_> {
         binding: u32,
     ) -> Handle<GlobalVariable> {
         let variable = GlobalVariable {
-            name: Some(self.names.placeholder(name.to_owned())),
+            name: Some(self.names.placeholder(name)),
             space,
             binding: Some(naga::ResourceBinding { group, binding }),
             ty,
@@ -96,7 +96,7 @@ impl Lowering<'_> {
                 // A bool can't stand in a uniform block.
                 let kind = if ty.scalar() == Some(Scalar::Bool) { naga::Scalar::U32 } else { scalar_of(*ty) };
                 let ty = Types::of(&mut self.module.types, numeric(kind, ty.width()));
-                Member { name: name.clone(), ty, binding: None }
+                Member { name: name.as_str().into(), ty, binding: None }
             })
             .collect();
         let ty = self.structure(&camel_case(&uniform.name), fields);
@@ -167,7 +167,7 @@ impl Lowering<'_> {
         let several = entry.outputs.len() > 1;
         let result = if several {
             let members = entry.outputs.iter().enumerate().map(|(i, (slot, _))| Member {
-                name: slot.name.clone(),
+                name: slot.name.as_str().into(),
                 ty: floats,
                 binding: Some(at_location(i as u32, true)),
             });
@@ -208,7 +208,7 @@ impl Lowering<'_> {
         };
         self.results.push(body.finish(value));
         self.module.entry_points.push(naga::EntryPoint {
-            name: self.names.placeholder(name.to_owned()),
+            name: self.names.placeholder(name),
             stage: naga::ShaderStage::Fragment,
             early_depth_test: None,
             workgroup_size: [0; 3],
@@ -226,16 +226,15 @@ impl Lowering<'_> {
         let mut scope = Scope::inside(&self.prefix);
         let inputs = entry.inputs.iter().map(|slot| {
             let ty = self.types.get(&mut self.module.types, slot.ty);
-            Member { name: slot.name.clone(), ty, binding: None }
+            Member { name: slot.name.as_str().into(), ty, binding: None }
         });
         let inputs: Vec<Member> = inputs.collect();
         let outputs = entry.outputs.iter().map(|(slot, _)| {
             let ty = self.types.get(&mut self.module.types, slot.ty);
-            Member { name: slot.name.clone(), ty, binding: None }
+            Member { name: slot.name.as_str().into(), ty, binding: None }
         });
         let outputs: Vec<Member> = outputs.collect();
-        let mut function =
-            naga::Function { name: Some(self.names.placeholder(name.to_owned())), ..Default::default() };
+        let mut function = naga::Function { name: Some(self.names.placeholder(name)), ..Default::default() };
         let takes_inputs = !inputs.is_empty();
         if takes_inputs {
             let ty = self.structure(&camel_case(&format!("{}_inputs", self.prefix)), inputs);
