@@ -178,10 +178,11 @@ pub fn mix(b: &mut Builder, v: &[Value]) -> Value {
     s.call(ADD, &[first, second])
 }
 
-/// Whether each component of `low` is less than that of `high` by `gap` or more, and both are known.
+/// Whether each component of `low` is less than that of `high` by `gap` or more, and by a number: all
+/// of it is known, and compilers work the difference out.
 fn in_order(b: &Builder, low: Value, high: Value, gap: f32) -> bool {
     let (Some(low), Some(high)) = (b.as_constant(low), b.as_constant(high)) else { return false };
-    (0..usize::from(low.width())).all(|i| high.float(i) - low.float(i) >= gap)
+    (0..usize::from(low.width())).all(|i| (gap..=f32::MAX).contains(&(high.float(i) - low.float(i))))
 }
 
 /// min(max(x, low), high), which has a value for reversed bounds too.
