@@ -55,25 +55,22 @@ fn is_mark(expr: &Expr) -> bool {
     }
 }
 
-/// The parts of a sequence.
-fn sequence<'e>(expr: &'e Expr, parts: &mut Vec<&'e Expr>) {
-    match expr {
-        Expr::Seq(left, right) => {
-            sequence(left, parts);
-            sequence(right, parts);
-        }
-        _ => parts.push(expr),
-    }
+/// The two sides of an expression of some kind.
+type Sides = fn(&Expr) -> Option<[&Expr; 2]>;
+
+fn sequence(expr: &Expr) -> Option<[&Expr; 2]> {
+    if let Expr::Seq(left, right) = expr { Some([left, right]) } else { None }
 }
 
-/// The alternatives of a choice.
-fn choices<'e>(expr: &'e Expr, alternatives: &mut Vec<&'e Expr>) {
-    match expr {
-        Expr::Choice(left, right) => {
-            choices(left, alternatives);
-            choices(right, alternatives);
-        }
-        _ => alternatives.push(expr),
+fn choice(expr: &Expr) -> Option<[&Expr; 2]> {
+    if let Expr::Choice(left, right) = expr { Some([left, right]) } else { None }
+}
+
+/// The parts of a sequence, or the alternatives of a choice, from left to right.
+fn flat(expr: &Expr, sides: Sides) -> Vec<&Expr> {
+    match sides(expr) {
+        Some(both) => both.into_iter().flat_map(|side| flat(side, sides)).collect(),
+        None => vec![expr],
     }
 }
 
@@ -134,10 +131,8 @@ impl Emitter {
             Expr::Str(text) => format!("self.word({:?}.as_bytes())", text),
             Expr::Ident(name) => self.call(name, mode)?,
             Expr::Seq(..) => {
-                let mut parts = Vec::new();
-                sequence(expr, &mut parts);
-                let parts: Result<Vec<String>, String> =
-                    parts.into_iter().map(|part| self.expr(part, mode)).collect();
+                let parts = flat(expr, sequence).into_iter().map(|part| self.expr(part, mode));
+                let parts: Result<Vec<String>, String> = parts.collect();
                 format!("({})", parts?.join(if mode.skips { " && self.skip() && " } else { " && " }))
             }
             Expr::Choice(..) => self.choice(expr, mode)?,
@@ -160,10 +155,8 @@ impl Emitter {
 
     /// Bytes that the same alternatives can begin with are one arm.
     fn choice(&mut self, expr: &Expr, mode: Mode) -> Result<String, String> {
-        let mut alternatives = Vec::new();
-        choices(expr, &mut alternatives);
         let mut codes = Vec::new();
-        for alternative in alternatives {
+        for alternative in flat(expr, choice) {
             let begins = first(&self.rules, alternative, mode.skips);
             let begins = if begins.is_empty { Bytes::ALL } else { begins.bytes };
             codes.push((begins, self.expr(alternative, mode)?));
