@@ -13,7 +13,12 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
-use texgraph_compiler::{Compiled, Library, Options, compile, lower::lower};
+use texgraph_compiler::lower::{Objects, lower};
+use texgraph_compiler::{Compiled, Library, Options, compile};
+
+/// The allocator of the command.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const TILING: &str = include_str!("../../examples/tiling.tex");
 const SIZES: [usize; 4] = [10, 100, 1_000, 10_000];
@@ -42,7 +47,7 @@ fn library() -> Library {
 
 /// The module of a compiled texture.
 fn module_of(compiled: &Compiled) -> naga::Module {
-    lower(&compiled.program.texture().graph, &compiled.program.manifest).module
+    lower(&compiled.program.texture().graph, &compiled.program.manifest, &Objects::default()).module
 }
 
 fn validated_and_written(module: &naga::Module) -> String {

@@ -69,3 +69,7 @@ fn peak_memory() -> String {
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     line.map_or_else(String::new, |peak| format!("peak memory {}", peak.trim()))
 }
+
+/// The allocator of the command.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;

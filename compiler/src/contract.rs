@@ -10,6 +10,7 @@ use crate::manifest::{
     SampleKind, Sampler, Source, Table, Texture, Type, Uniform, Value,
 };
 use crate::naming::{self, Scope};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 /// The params and views that are read, in order.
@@ -93,10 +94,10 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
         let function = pass.function(pass.entry());
         let shader = match bake {
             Some(_) => files.name(&format!("{}_{}", entry.name, function.name)).to_string(),
-            None => entry.name.clone(),
+            None => entry.name.to_string(),
         };
         Pass {
-            name: function.name.clone(),
+            name: function.name.to_string(),
             bake: *bake,
             reads: views(graph, reads),
             params: reads.params.iter().map(|id| graph.params[id.0 as usize].name.clone()).collect(),
@@ -112,7 +113,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
     Manifest {
         version: manifest::VERSION,
         generator: format!("texgraph {}", env!("CARGO_PKG_VERSION")),
-        texture: entry.name.clone(),
+        texture: entry.name.to_string(),
         label: label.to_owned(),
         form: options.form,
         inputs,
@@ -126,17 +127,20 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
 
 /// What lowering reads of the manifest for one of its passes: a bake is a texture of its own, in
 /// the complete form, over the program's bindings.
-pub fn of_pass(manifest: &Manifest, index: usize) -> Manifest {
+pub fn of_pass(manifest: &Manifest, index: usize) -> Cow<'_, Manifest> {
+    if manifest.passes.len() == 1 {
+        return Cow::Borrowed(manifest);
+    }
     let mut own = manifest.clone();
     own.passes = manifest.passes.get(index).cloned().into_iter().collect();
-    let Some(pass) = own.passes.first().filter(|pass| pass.bake.is_some()) else { return own };
+    let Some(pass) = own.passes.first().filter(|pass| pass.bake.is_some()) else { return Cow::Owned(own) };
     let float = |width| Type { scalar: manifest::Scalar::Float, width };
     own.texture = pass.shader.trim_end_matches(".wgsl").to_owned();
     own.form = Form::Complete;
     own.inputs = vec![Input { name: "uv".to_owned(), ty: float(2), source: Source::Varying(0) }];
     let texel = Output { name: "texel".to_owned(), ty: float(4), location: 0, is_color: false };
     own.outputs = vec![texel];
-    own
+    Cow::Owned(own)
 }
 
 /// The params that shaders read from the uniform block; the last reads its arguments in the
@@ -150,7 +154,7 @@ fn bound_params(each: &[Reads], form: Form) -> BTreeSet<ParamId> {
 /// How the function of a texture is called; lowering makes the same arguments.
 fn call(graph: &Graph, entry: &graph::Function, reads: &Reads) -> Call {
     let mut arguments: Vec<Argument> =
-        entry.inputs.iter().map(|slot| Argument::Input(slot.name.clone())).collect();
+        entry.inputs.iter().map(|slot| Argument::Input(slot.name.to_string())).collect();
     let params = reads.params.iter().map(|id| &graph.params[id.0 as usize]);
     arguments.extend(params.map(|param| Argument::Param(param.name.clone())));
     for view in reads.views.iter().map(|id| &graph.views[id.0 as usize]) {
@@ -225,7 +229,7 @@ fn inputs(entry: &graph::Function, form: Form, block: &mut Block) -> Vec<Input> 
     };
     let inputs = entry.inputs.iter();
     inputs
-        .map(|slot| Input { name: slot.name.clone(), ty: public_type(slot.ty), source: source(slot) })
+        .map(|slot| Input { name: slot.name.to_string(), ty: public_type(slot.ty), source: source(slot) })
         .collect()
 }
 
@@ -233,7 +237,7 @@ fn outputs(entry: &graph::Function) -> Vec<Output> {
     let outputs = entry.outputs.iter().enumerate();
     outputs
         .map(|(i, (slot, _))| Output {
-            name: slot.name.clone(),
+            name: slot.name.to_string(),
             ty: public_type(slot.ty),
             location: i as u32,
             is_color: slot.name == "color",

@@ -9,6 +9,7 @@
 //! [`module::Loader`], and gets back plain data.
 
 mod advice;
+mod ahead;
 mod check;
 pub mod color;
 pub mod contract;
@@ -131,7 +132,7 @@ pub fn compile(
     let Planned { graphs, manifest } = planned(library, &modules, options).map_err(fail)?;
     let mut passes = Vec::new();
     for (i, PassGraph { graph, .. }) in graphs.into_iter().enumerate() {
-        let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i));
+        let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i), &library.ahead().objects);
         let wgsl = emit::wgsl(&lowered).map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
         passes.push(Pass { graph, wgsl });
     }
@@ -211,8 +212,10 @@ struct Planned {
 fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Planned, Vec<Diagnostic>> {
     let checked = checked(library, modules, options);
     let Checked { graphs, label, head } = checked.map_err(|found| advice::advise(modules, found))?;
-    let optimised =
-        graphs.into_iter().map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph), bake });
+    let finished = &library.ahead().finished;
+    let optimised = graphs
+        .into_iter()
+        .map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph, finished), bake });
     let graphs: Vec<PassGraph> = optimised.collect();
     let manifest = contract::manifest(&graphs, &label, options);
     let passed = graphs.last().map(|last| profile::check(options.profile, &manifest, &last.graph, head));
@@ -266,6 +269,6 @@ fn choose_outputs(graph: &mut Graph, options: &Options, place: Place) -> Result<
             return Err(limits::no_such_texture_output(place, name, &known.join(", "), near));
         }
     }
-    entry.outputs.retain(|(slot, _)| wanted.contains(&slot.name));
+    entry.outputs.retain(|(slot, _)| wanted.iter().any(|name| slot.name == *name));
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The standard library: `std/*.tex`, parsed once, its nodes made as most programs call them, and
 //! shared by every compilation.
 
+use crate::ahead::Ahead;
 use crate::check::{self, Key, Known, Prepared};
 use crate::intrinsic::Intrinsic;
 use crate::module::{Module, Source, Sources};
@@ -42,6 +43,8 @@ pub struct Library {
     known: Vec<Vec<Known>>,
     /// Nodes as most programs call them.
     prepared: FxHashMap<Key, Prepared>,
+    /// What later stages make of these.
+    ahead: Ahead,
 }
 
 impl Library {
@@ -70,12 +73,15 @@ impl Library {
             signatures: Vec::new(),
             known: Vec::new(),
             prepared: FxHashMap::default(),
+            ahead: Ahead::default(),
         };
         for (path, text) in files {
             library.add_file(path, text)?;
         }
         library.add_tables()?;
-        library.prepared = check::prepare(&library);
+        let (prepared, functions) = check::prepare(&library);
+        library.ahead = Ahead::of(functions, prepared.iter().map(|(_, prepared)| prepared.node()));
+        library.prepared = prepared.into_iter().collect();
         Ok(library)
     }
 
@@ -140,6 +146,11 @@ impl Library {
         self.prepared.get(key)
     }
 
+    /// What is made of its nodes before any program calls them.
+    pub(crate) fn ahead(&self) -> &Ahead {
+        &self.ahead
+    }
+
     /// What a name may mean, in order of preference.
     pub fn callables(&self, name: &str) -> &[Callable] {
         self.callables.get(name).map_or(&[], Vec::as_slice)
@@ -174,15 +185,16 @@ fn row(callable: Callable) -> Option<usize> {
 }
 
 #[cfg(test)]
+#[allow(clippy::disallowed_methods, reason = "tests read the examples")]
 mod tests {
     use super::*;
-    use crate::{Options, compile};
+    use crate::{Form, Options, compile, textures};
     use std::collections::HashMap;
 
     const TEXT: &str = r#"
 let rock = image("rock.jpg")
 
-texture t(uv: vec2) -> (color: color) {
+texture mixture(uv: vec2) -> (color: color) {
     let mixed = mix(turbulence(uv), fbm(uv * 3.0, octaves: 2), noise(uv, seed: 7))
     let again = noise(vec3(uv, fbm(uv)))
     let turn  = rotation(again) * uv
@@ -190,15 +202,39 @@ texture t(uv: vec2) -> (color: color) {
 }
 "#;
 
+    /// Every example, and a texture that calls nodes in many ways.
+    fn files() -> HashMap<String, String> {
+        let entries = ["examples", "tests/golden"].iter().flat_map(|folder| {
+            std::fs::read_dir(format!("{}/../{folder}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+        });
+        let files = entries.map(|entry| entry.unwrap().path());
+        let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "tex"));
+        let named = files.map(|path| {
+            let text = std::fs::read_to_string(&path).unwrap();
+            (path.file_name().unwrap().to_string_lossy().into_owned(), text)
+        });
+        // What imports from a folder beside it would need that, too.
+        let alone = named.filter(|(_, text)| !text.contains("\nuse \""));
+        alone.chain([("mixture.tex".to_owned(), TEXT.to_owned())]).collect()
+    }
+
     #[test]
     fn nodes_made_ahead_are_those_made_in_place() {
-        let files: HashMap<String, String> = [("t.tex".to_owned(), TEXT.to_owned())].into();
         let library = Library::standard().unwrap();
         assert!(!library.prepared.is_empty());
-        let plain = Library { prepared: FxHashMap::default(), ..library.clone() };
-        let [ahead, in_place] = [library, plain].map(|library| {
-            compile(&library, "t.tex", &files, &Options::default()).unwrap().program.texture().wgsl.clone()
-        });
-        assert_eq!(ahead, in_place);
+        let plain = Library { prepared: FxHashMap::default(), ahead: Ahead::default(), ..library.clone() };
+        let files = files();
+        for file in files.keys() {
+            for texture in textures(&library, file, &files).unwrap() {
+                for form in [Form::Complete, Form::Library, Form::Functions] {
+                    let options = Options { texture: Some(texture.clone()), form, ..Options::default() };
+                    let [ahead, in_place] = [&library, &plain].map(|library| {
+                        let compiled = compile(library, file, &files, &options).unwrap();
+                        compiled.program.passes.into_iter().map(|pass| pass.wgsl).collect::<Vec<_>>()
+                    });
+                    assert_eq!(ahead, in_place, "{file}: {texture}");
+                }
+            }
+        }
     }
 }

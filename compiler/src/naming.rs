@@ -6,6 +6,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
+use std::collections::hash_map::Entry;
 use std::ops::Range;
 
 /// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
@@ -58,11 +59,15 @@ pub fn camel_case(name: &str) -> String {
 const LETTERS: &[u8; 26] = b"abcdefghijklmnopqrstuvwxyz";
 const DIGITS: &[u8; 10] = b"0123456789";
 
-/// Writes a number in the system of these digits.
-fn push_number(text: &mut String, number: usize, digits: &[u8]) {
-    for place in (0..=number.checked_ilog(digits.len()).unwrap_or(0)).rev() {
-        let digit = number / digits.len().pow(place) % digits.len();
-        text.push(char::from(digits[digit]));
+/// Writes a number in the system of these digits, two or more.
+fn push_number(text: &mut String, mut number: usize, digits: &[u8]) {
+    let start = text.len();
+    loop {
+        text.insert(start, char::from(digits[number % digits.len()]));
+        number /= digits.len();
+        if number == 0 {
+            break;
+        }
     }
 }
 
@@ -72,13 +77,15 @@ pub struct Scope {
     /// The names taken, each with how many suffixes of it have been tried.
     taken: FxHashMap<SmolStr, usize>,
     /// Names beginning with this belong to the module.
-    module: String,
+    module: SmolStr,
 }
 
 impl Scope {
     /// A scope inside a module all of whose names begin with `module`.
     pub fn inside(module: &str) -> Scope {
-        Scope { module: module.to_owned(), ..Scope::default() }
+        // As many names as most functions have.
+        let taken = FxHashMap::with_capacity_and_hasher(28, Default::default());
+        Scope { taken, module: module.into() }
     }
 
     /// Takes a name that was chosen elsewhere.
@@ -88,17 +95,31 @@ impl Scope {
 
     /// The wished name, or one like it that is free here.
     pub fn name(&mut self, wish: &str) -> SmolStr {
-        let name = self.free(identifier(wish));
-        self.taken.insert(name.clone(), 0);
-        name
+        let name = self.own(identifier(wish));
+        match self.taken.entry(name) {
+            Entry::Vacant(free) => {
+                let name = free.key().clone();
+                free.insert(0);
+                name
+            }
+            Entry::Occupied(taken) => {
+                let (name, tried) = (taken.key().clone(), *taken.get());
+                self.other(name, tried)
+            }
+        }
     }
 
-    /// The name, or one like it that is free.
-    fn free(&mut self, name: SmolStr) -> SmolStr {
-        let module = !self.module.is_empty()
-            && name.strip_prefix(&self.module).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
-        let name = if module || is_reserved(&name) { format_smolstr!("{name}_value") } else { name };
-        let Some(mut tried) = self.taken.get(&name).copied() else { return name };
+    /// The name, unless it is the module's or the language's.
+    fn own(&self, name: SmolStr) -> SmolStr {
+        if is_of_module(&name, &self.module) || is_reserved(&name) {
+            format_smolstr!("{name}_value")
+        } else {
+            name
+        }
+    }
+
+    /// A free name like one that is taken, of which so many suffixes have been tried.
+    fn other(&mut self, name: SmolStr, mut tried: usize) -> SmolStr {
         let mut other = String::with_capacity(name.len() + 4);
         other.push_str(&name);
         while self.taken.contains_key(other.as_str()) {
@@ -108,9 +129,17 @@ impl Scope {
             other.push('_');
             push_number(&mut other, tried, LETTERS);
         }
+        let other = SmolStr::from(other);
         self.taken.insert(name, tried);
-        other.into()
+        self.taken.insert(other.clone(), 0);
+        other
     }
+}
+
+/// Whether a name begins with that of its module, if that has one.
+fn is_of_module(name: &str, module: &str) -> bool {
+    let rest = name.strip_prefix(module).filter(|_| !module.is_empty());
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
 }
 
 /// Keywords, reserved words and predeclared names of WGSL, and those Tint refuses beyond them.
@@ -119,17 +148,18 @@ fn is_reserved(name: &str) -> bool {
 }
 
 /// Final names by placeholder.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Names(Vec<Name>);
 
 /// What a placeholder stands for.
+#[derive(Clone, Debug)]
 struct Name {
     text: SmolStr,
     kind: Kind,
 }
 
 /// How a name is declared.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// As the writer declares it.
     Plain,
@@ -169,11 +199,24 @@ impl Names {
 
     fn push(&mut self, text: SmolStr, kind: Kind) -> String {
         let mut placeholder = String::with_capacity(8);
-        placeholder.push('z');
-        push_number(&mut placeholder, self.0.len(), DIGITS);
-        placeholder.push('z');
+        write_placeholder(&mut placeholder, self.0.len());
         self.0.push(Name { text, kind });
         placeholder
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Adds the names of others behind its own.
+    pub fn extend(&mut self, others: &Names, range: Range<usize>) {
+        self.0.extend_from_slice(&others.0[range]);
+    }
+
+    /// Whether one of these names begins as those of a module do.
+    pub fn begin_with(&self, range: Range<usize>, module: &str) -> bool {
+        self.0[range].iter().any(|name| is_of_module(&name.text, module))
     }
 
     /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
@@ -185,7 +228,12 @@ impl Names {
         // What stands before `done` is in `out`.
         let mut done = 0;
         let mut at = 0;
-        while let Some((place, token)) = next_token(text, at) {
+        for start in memchr::memchr2_iter(b'z', b'_', text.as_bytes()) {
+            let Some((length, token)) = (start >= at).then(|| token_at(text.as_bytes(), start)).flatten()
+            else {
+                continue;
+            };
+            let place = start..start + length;
             at = place.end;
             let before = &text[done..place.start];
             let results = results.get(functions.wrapping_sub(1));
@@ -224,6 +272,21 @@ impl Names {
     }
 }
 
+/// Makes a text the placeholder of that number.
+fn write_placeholder(text: &mut String, number: usize) {
+    text.clear();
+    text.push('z');
+    push_number(text, number, DIGITS);
+    text.push('z');
+}
+
+/// Makes a placeholder the one of another number.
+pub fn renumber(placeholder: &mut String, other: impl Fn(usize) -> usize) {
+    if let Some((_, Token::Placeholder(number))) = token(placeholder.as_bytes()) {
+        write_placeholder(placeholder, other(number));
+    }
+}
+
 /// A name in the text that is to be replaced.
 enum Token {
     /// `z17z`
@@ -232,14 +295,9 @@ enum Token {
     Result(u32),
 }
 
-/// The next one from `from` on, and where it stands.
-fn next_token(text: &str, from: usize) -> Option<(Range<usize>, Token)> {
-    let bytes = text.as_bytes();
-    memchr::memchr2_iter(b'z', b'_', &bytes[from..]).find_map(|found| {
-        let start = from + found;
-        let (length, token) = token(&bytes[start..])?;
-        (!bytes[..start].last().is_some_and(is_part)).then_some((start..start + length, token))
-    })
+/// The token at a place in the text, and its length; none in the middle of a name.
+fn token_at(text: &[u8], start: usize) -> Option<(usize, Token)> {
+    if text[..start].last().is_some_and(is_part) { None } else { token(&text[start..]) }
 }
 
 /// The token that a text begins with, and its length.

@@ -93,7 +93,8 @@ fn graph(functions: Vec<Function>) -> Graph {
 fn shader(name: &str, functions: Vec<Function>) -> String {
     let graphs = [PassGraph { graph: graph(functions), bake: None }];
     let manifest = contract::manifest(&graphs, "", &Options::default());
-    let lowered = lower::lower(&graphs[0].graph, &contract::of_pass(&manifest, 0));
+    let lowered =
+        lower::lower(&graphs[0].graph, &contract::of_pass(&manifest, 0), &lower::Objects::default());
     let text = emit::wgsl(&lowered).unwrap_or_else(|error| panic!("{name}: {error}"));
     if let Ok(folder) = std::env::var("TEXGRAPH_WGSL") {
         std::fs::create_dir_all(&folder).expect("the folder is made");

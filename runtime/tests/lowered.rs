@@ -234,7 +234,8 @@ fn random_graph(seed: u64) -> Graph {
 fn shaders_give_what_graphs_do(gpu: &Gpu, seed: u64) -> Result<(), Failed> {
     let graphs = [PassGraph { graph: random_graph(seed), bake: None }];
     let manifest = contract::manifest(&graphs, "", &Options::default());
-    let lowered = lower::lower(&graphs[0].graph, &contract::of_pass(&manifest, 0));
+    let lowered =
+        lower::lower(&graphs[0].graph, &contract::of_pass(&manifest, 0), &lower::Objects::default());
     let [PassGraph { graph, .. }] = graphs;
     let wgsl = emit::wgsl(&lowered).map_err(|error| format!("{seed}: {error}\n{graph}"))?;
     let program = Program { passes: vec![Pass { graph, wgsl }], manifest };

@@ -370,7 +370,7 @@ impl<'a> Checker<'a> {
                 self.unknown_value(f, word, *at);
             }
             Wire::Record(outputs) => {
-                let names: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
+                let names: Vec<String> = outputs.iter().map(|(name, _)| name.to_string()).collect();
                 self.report(f, errors::record_as_value(place, &names));
             }
             Wire::Callables(nodes) => {

@@ -11,6 +11,7 @@ use crate::graph::{Constant, FunctionId, Operation, Value};
 use crate::library::{Callable, Library};
 use crate::resource::KINDS;
 use smallvec::SmallVec;
+use smol_str::SmolStr;
 use std::borrow::Cow;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Argument, Call, Dim, Expr, ExprKind, Field, Input, Postfix, Span, TypeKind};
@@ -367,7 +368,7 @@ impl<'a> Checker<'a> {
         match outputs {
             [only] => wire(only),
             _ => {
-                let record = outputs.iter().map(|output| (output.name.text.to_string(), wire(output)));
+                let record = outputs.iter().map(|output| (output.name.text.clone(), wire(output)));
                 Wire::Record(Rc::new(record.collect()))
             }
         }
@@ -376,7 +377,7 @@ impl<'a> Checker<'a> {
     /// The outputs of a function that gives a wire of a node.
     fn wire_outputs(&self, id: FunctionId, results: Vec<Value>) -> Wire {
         let slots = self.functions[id.0 as usize].outputs.iter().map(|(slot, _)| slot.name.clone());
-        let mut record: Vec<(String, Wire)> = slots.zip(results.into_iter().map(Wire::Value)).collect();
+        let mut record: Vec<(SmolStr, Wire)> = slots.zip(results.into_iter().map(Wire::Value)).collect();
         if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
     }
 

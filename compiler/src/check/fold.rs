@@ -11,6 +11,7 @@ use crate::diagnostic::{Place, folds, limits, names, types as errors};
 use crate::graph::evaluate::{Stopped, evaluate};
 use crate::graph::{self, Builder, Constant, Function, FunctionId, Scalar, Type, Value};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Expr, Fold, Name, Pattern, Span, Statement};
 
@@ -60,8 +61,8 @@ impl<'a> Checker<'a> {
         let made =
             graph::Fold { body: inner, condition, starts, steps: steps.steps, most: steps.most, captures };
         let Some(results) = self.fold_results(f, made, place) else { return Wire::Unknown };
-        let names = fold.accumulators.iter().map(|(name, _)| name.text.to_string());
-        let mut record: Vec<(String, Wire)> = names.zip(results.into_iter().map(Wire::Value)).collect();
+        let names = fold.accumulators.iter().map(|(name, _)| name.text.clone());
+        let mut record: Vec<(SmolStr, Wire)> = names.zip(results.into_iter().map(Wire::Value)).collect();
         if record.len() == 1 { record.remove(0).1 } else { Wire::Record(Rc::new(record)) }
     }
 

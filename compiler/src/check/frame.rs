@@ -8,6 +8,7 @@ use super::wire::{Key, Wire};
 use crate::diagnostic::Place;
 use crate::graph::Builder;
 use rustc_hash::{FxHashMap, FxHashSet};
+use smol_str::SmolStr;
 use texgraph_grammar::syntax::{Expr, Input, Item, ItemKind, Name, Node, Pattern, Postfix, Span};
 
 /// One thing to do in a function: bind names, assign an output, or declare a param.
@@ -121,7 +122,7 @@ impl<'a> Frame<'a> {
     }
 
     /// The name of the node whose body is being made, whatever stands inside it.
-    pub(super) fn function_name(&self) -> String {
+    pub(super) fn function_name(&self) -> SmolStr {
         self.builder_of(0).function().name.clone()
     }
 }

@@ -7,6 +7,7 @@ use super::wire::{NodeWire, ResourceWire, Wire};
 use super::{Checker, Frame};
 use crate::graph::{Builder, Operation, Value};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 use std::rc::Rc;
 
 /// A function that waits for one inside it.
@@ -72,7 +73,8 @@ impl<'a> Frame<'a> {
                 Wire::Matrix(columns.iter().map(|column| self.capture(level, *column)).collect())
             }
             Wire::Record(outputs) => {
-                let import = |(name, wire): &(String, Wire)| (name.clone(), self.import(level, wire.clone()));
+                let import =
+                    |(name, wire): &(SmolStr, Wire)| (name.clone(), self.import(level, wire.clone()));
                 Wire::Record(Rc::new(outputs.iter().map(import).collect()))
             }
             Wire::List(items) => {
@@ -129,7 +131,7 @@ fn name_of(builder: &Builder, value: Value) -> String {
     match (function.names.get(value), function.operation(value)) {
         (Some(name), _) => name.to_string(),
         (None, Operation::Input(i)) => {
-            function.inputs.get(*i as usize).map_or(String::new(), |slot| slot.name.clone())
+            function.inputs.get(*i as usize).map_or(String::new(), |slot| slot.name.to_string())
         }
         (None, Operation::Output(call, i)) => match function.operation(*call) {
             Operation::Call(..) | Operation::Fold(_) => format!("captured_{i}"),

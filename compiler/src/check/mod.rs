@@ -85,6 +85,8 @@ pub struct Checker<'a> {
     /// The resources that are rows of the shared table.
     rows: Vec<u32>,
     diagnostics: Vec<Diagnostic>,
+    /// Where functions that were made ahead stand, by their place in the library's list.
+    taken: FxHashMap<FunctionId, FunctionId>,
     /// Nodes made or being made.
     started: usize,
     /// Values of the functions made.
@@ -126,6 +128,7 @@ impl<'a> Checker<'a> {
             views: Vec::new(),
             rows: Vec::new(),
             diagnostics: Vec::new(),
+            taken: FxHashMap::default(),
             started: 0,
             values: 0,
             budget: limits::MAX_EVALUATION,
@@ -363,7 +366,7 @@ impl<'a> Checker<'a> {
             }
         };
         if matches!(wire, Wire::Record(_)) && outputs.len() != names.len() {
-            let known: Vec<String> = outputs.iter().map(|(name, _)| name.clone()).collect();
+            let known: Vec<String> = outputs.iter().map(|(name, _)| name.to_string()).collect();
             self.report(f, type_errors::destructuring(place, names.len(), &known));
             // The outputs that got no name may be read by their own: that is the same slip.
             known.iter().for_each(|name| f.unknown.insert(name));

@@ -8,6 +8,7 @@ use super::wire::{NodeWire, Wire};
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, nodes};
 use crate::graph::{Builder, Constant, Scalar, Type, Value};
+use smol_str::{SmolStr, format_smolstr};
 use std::rc::Rc;
 use std::sync::Arc;
 use texgraph_grammar::syntax::{Expr, ExprKind, Name, Postfix};
@@ -151,7 +152,7 @@ impl<'a> Checker<'a> {
                 let outputs = match &wire {
                     Wire::Record(outputs) if outputs.len() == fields.len() => Rc::clone(outputs),
                     other => {
-                        let wanted: Vec<String> = fields.iter().map(|(name, _)| name.clone()).collect();
+                        let wanted: Vec<String> = fields.iter().map(|(name, _)| name.to_string()).collect();
                         let found = super::types::describe(other, |v| f.builder.ty(v));
                         self.report(f, nodes::record_fields(place, &wanted, &found));
                         return None;
@@ -276,7 +277,7 @@ pub fn open_input(builder: &mut Builder, name: &str, declared: &Declared) -> Wir
             Wire::Matrix((0..*size).map(column).collect())
         }
         Declared::Record(fields) => {
-            let field = |(field, declared): &(String, Declared)| {
+            let field = |(field, declared): &(SmolStr, Declared)| {
                 (field.clone(), open_input(builder, &format!("{name}_{field}"), declared))
             };
             Wire::Record(Rc::new(fields.iter().map(field).collect()))
@@ -286,18 +287,18 @@ pub fn open_input(builder: &mut Builder, name: &str, declared: &Declared) -> Wir
 }
 
 /// The name of a column of a matrix.
-pub fn column_name(name: &str, i: u8) -> String {
-    format!("{name}_{}", ["x", "y", "z", "w"][usize::from(i.min(3))])
+pub fn column_name(name: &str, i: u8) -> SmolStr {
+    format_smolstr!("{name}_{}", ["x", "y", "z", "w"][usize::from(i.min(3))])
 }
 
 /// The names of a function's outputs for a value of a type.
-pub fn slots(declared: &Declared, name: &str) -> Vec<String> {
+pub fn slots(declared: &Declared, name: &str) -> Vec<SmolStr> {
     match declared {
         Declared::Matrix(size) => (0..*size).map(|i| column_name(name, i)).collect(),
         Declared::Record(fields) => {
             fields.iter().flat_map(|(field, declared)| slots(declared, field)).collect()
         }
-        _ => vec![name.to_owned()],
+        _ => vec![name.into()],
     }
 }
 
@@ -306,7 +307,7 @@ pub fn shaped(declared: &Declared, values: &mut dyn Iterator<Item = Value>) -> W
     match declared {
         Declared::Matrix(size) => Wire::Matrix(values.take(usize::from(*size)).collect()),
         Declared::Record(fields) => {
-            let field = |(name, declared): &(String, Declared)| (name.clone(), shaped(declared, values));
+            let field = |(name, declared): &(SmolStr, Declared)| (name.clone(), shaped(declared, values));
             Wire::Record(Rc::new(fields.iter().map(field).collect()))
         }
         _ => values.next().map_or(Wire::Unknown, Wire::Value),

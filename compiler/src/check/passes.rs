@@ -45,7 +45,9 @@ fn mark(graph: &Graph, entry: FunctionId, needed: &mut [bool]) {
 /// The graph of a bake: its function, which gets the name of its resource, after all that it calls.
 pub fn bake(graph: &Graph, resource: &Resource) -> Option<Graph> {
     let mut functions = graph.functions.get(..=resource.bake?.0 as usize)?.to_vec();
-    functions.last_mut()?.name.clone_from(&resource.name);
+    let entry = functions.last_mut()?;
+    entry.name = resource.name.as_str().into();
+    entry.origin = None;
     let Graph { params, resources, views, .. } = graph;
     Some(Graph { functions, params: params.clone(), resources: resources.clone(), views: views.clone() })
 }

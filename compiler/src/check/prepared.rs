@@ -9,22 +9,30 @@ use super::types::{self, Declared, Dims};
 use super::wire::{ArgumentKey, Key};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, limits};
-use crate::graph::{Function, FunctionId, Operation};
+use crate::graph::{Function, FunctionId};
 use crate::library::{Callable, Library};
-use rustc_hash::FxHashMap;
 use texgraph_grammar::syntax::Node;
 
-/// A node made ahead.
+/// A node made ahead; functions by their place in the library's list.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// What was made, in the order that it is made in.
-    functions: Vec<Function>,
+    functions: Vec<FunctionId>,
     /// Which of them the node is, and each that it calls.
     nodes: Vec<(Key, FunctionId)>,
+    node: FunctionId,
 }
 
-/// What of a library can be made ahead.
-pub fn prepare(library: &Library) -> FxHashMap<Key, Prepared> {
+impl Prepared {
+    /// The node itself.
+    pub fn node(&self) -> FunctionId {
+        self.node
+    }
+}
+
+/// What of a library can be made ahead: nodes by the calls that they are made for, and the functions
+/// of all of them, each once.
+pub fn prepare(library: &Library) -> (Vec<(Key, Prepared)>, Vec<Function>) {
     let modules = library.modules().iter().enumerate();
     let items =
         modules.flat_map(|(i, module)| module.tree.items.iter().enumerate().map(move |item| (i, item)));
@@ -33,15 +41,18 @@ pub fn prepare(library: &Library) -> FxHashMap<Key, Prepared> {
         let widths = if node.dims.is_empty() { 1..=1 } else { 1..=4 };
         widths.map(move |width| (module, item, node, width))
     });
-    let prepared = calls.filter_map(|(module, item, node, width)| {
-        Checker::new(library, library.modules()).prepared(module, item, node, width)
+    let mut all = Checker::new(library, library.modules());
+    let made = calls.filter_map(|(module, item, node, width)| {
+        let made = Checker::new(library, library.modules()).made_alone(module, item, node, width)?;
+        Some(all.collect(made))
     });
-    prepared.collect()
+    let made = made.collect();
+    (made, all.functions)
 }
 
 impl<'a> Checker<'a> {
     /// Makes a node and all it calls; none where that is not the same in every program.
-    fn prepared(mut self, module: usize, item: usize, node: &'a Node, width: u8) -> Option<(Key, Prepared)> {
+    fn made_alone(mut self, module: usize, item: usize, node: &'a Node, width: u8) -> Option<Alone> {
         self.declare();
         let is_alone = self.functions.is_empty() && self.params.is_empty() && self.resources.is_empty();
         let key = self.open_call(module, item, node, width).filter(|_| is_alone)?;
@@ -53,7 +64,21 @@ impl<'a> Checker<'a> {
         });
         let nodes = nodes.collect::<Option<Vec<_>>>()?;
         let is_free = self.diagnostics.is_empty() && self.budget == limits::MAX_EVALUATION;
-        is_free.then_some((key, Prepared { functions: self.functions, nodes }))
+        is_free.then_some(Alone { key, functions: self.functions, nodes })
+    }
+
+    /// Puts the functions of a node among those of all.
+    fn collect(&mut self, alone: Alone) -> (Key, Prepared) {
+        let Alone { key, functions, nodes } = alone;
+        let mut ids: Vec<FunctionId> = Vec::with_capacity(functions.len());
+        for mut function in functions {
+            function.replace_functions(|id| ids[id.0 as usize]);
+            ids.push(self.intern(function));
+        }
+        let nodes: Vec<(Key, FunctionId)> =
+            nodes.into_iter().map(|(key, id)| (key, ids[id.0 as usize])).collect();
+        let node = nodes.iter().find(|(other, _)| *other == key).map_or(FunctionId(0), |(_, id)| *id);
+        (key, Prepared { functions: ids, nodes, node })
     }
 
     /// The key of a call that gives what has no default, and gives nothing that is known.
@@ -91,27 +116,26 @@ impl<'a> Checker<'a> {
 
     /// Takes over a node that was made ahead, which counts as one that is made.
     pub(super) fn take_over(&mut self, prepared: &Prepared) {
-        let mut ids: Vec<FunctionId> = Vec::with_capacity(prepared.functions.len());
-        for function in &prepared.functions {
-            let mut function = function.clone();
-            let new = |id: &mut FunctionId| *id = ids[id.0 as usize];
-            for operation in &mut function.values {
-                match operation {
-                    Operation::Call(callee, _) => new(callee),
-                    Operation::Fold(fold) => {
-                        new(&mut fold.body);
-                        fold.condition.iter_mut().for_each(new);
-                    }
-                    _ => {}
-                }
+        for ahead in &prepared.functions {
+            if !self.taken.contains_key(ahead) {
+                let mut function = self.library.ahead().checked[ahead.0 as usize].clone();
+                function.replace_functions(|id| self.taken.get(&id).copied().unwrap_or(id));
+                let id = self.intern(function);
+                self.taken.insert(*ahead, id);
             }
-            ids.push(self.intern(function));
         }
-        for (key, id) in &prepared.nodes {
+        for (key, ahead) in &prepared.nodes {
             if !self.made.contains_key(key) {
                 self.started += 1;
-                self.made.insert(key.clone(), Outcome::Made(ids[id.0 as usize]));
+                self.made.insert(key.clone(), Outcome::Made(self.taken[ahead]));
             }
         }
     }
+}
+
+/// A node made on its own; functions by their place in its list.
+struct Alone {
+    key: Key,
+    functions: Vec<Function>,
+    nodes: Vec<(Key, FunctionId)>,
 }

@@ -5,6 +5,7 @@ use crate::diagnostic::{Diagnostic, Place, types};
 use crate::graph::{Scalar, Type};
 use crate::resource::{KINDS, LATER};
 use smallvec::SmallVec;
+use smol_str::SmolStr;
 use std::sync::Arc;
 use texgraph_grammar::syntax::{self, Dim, TypeKind};
 
@@ -20,7 +21,7 @@ pub enum Declared {
     /// A node.
     Node(Arc<NodeType>),
     /// Inside a node's type only: several values with names.
-    Record(Vec<(String, Declared)>),
+    Record(Vec<(SmolStr, Declared)>),
     /// What a baked node gives: one to four floats.
     Texel,
     /// One of these words.
@@ -37,7 +38,7 @@ pub enum Declared {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodeType {
     /// Numbers, matrices and records of them, with their names.
-    pub inputs: Vec<(String, Declared)>,
+    pub inputs: Vec<(SmolStr, Declared)>,
     /// A number, a matrix or a record.
     pub output: Declared,
 }
@@ -137,8 +138,8 @@ fn fields(
     fields: &[syntax::Field],
     dims: &Dims<'_>,
     file: u32,
-) -> Result<Vec<(String, Declared)>, Diagnostic> {
-    fields.iter().map(|field| Ok((field.name.text.to_string(), part(&field.ty, dims, file)?))).collect()
+) -> Result<Vec<(SmolStr, Declared)>, Diagnostic> {
+    fields.iter().map(|field| Ok((field.name.text.clone(), part(&field.ty, dims, file)?))).collect()
 }
 
 /// What may stand inside a node's type: numbers, matrices, and records of them.

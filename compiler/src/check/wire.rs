@@ -5,6 +5,7 @@ use crate::diagnostic::Place;
 use crate::graph::{Constant, FunctionId, Type, Value};
 use crate::library::Callable;
 use smallvec::SmallVec;
+use smol_str::SmolStr;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ pub enum Wire {
     /// A texture of a resource: `p.layers`.
     View(Value),
     /// The outputs of a node with several.
-    Record(Rc<Vec<(String, Wire)>>),
+    Record(Rc<Vec<(SmolStr, Wire)>>),
     /// A matrix, by its columns.
     Matrix(Rc<[Value]>),
     /// A resource.

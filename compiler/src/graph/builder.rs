@@ -4,6 +4,7 @@ use super::interner::Interner;
 use super::{Constant, Function, FunctionId, Level, Operation, Place, Scalar, Slot, Type, Value, View};
 use crate::intrinsic::{Form, Intrinsic, TO_FLOAT, TO_INT};
 use crate::pass::fold_constants::{Folded, fold};
+use smol_str::SmolStr;
 use std::sync::Arc;
 
 /// A function in the making.
@@ -18,12 +19,12 @@ pub struct Builder {
 
 impl Builder {
     /// Starts a function of that name.
-    pub fn new(name: impl Into<String>) -> Builder {
+    pub fn new(name: impl Into<SmolStr>) -> Builder {
         Builder { function: Function { name: name.into(), ..Function::default() }, ..Builder::default() }
     }
 
     /// Starts a function of that name, with room for that many values.
-    pub fn with_capacity(name: impl Into<String>, values: usize) -> Builder {
+    pub fn with_capacity(name: impl Into<SmolStr>, values: usize) -> Builder {
         let mut builder = Builder { known: Interner::with_capacity(values), ..Builder::new(name) };
         builder.function.values.reserve(values);
         builder.function.types.reserve(values);
@@ -114,14 +115,14 @@ impl Builder {
     }
 
     /// A new input.
-    pub fn input(&mut self, name: impl Into<String>, ty: Type) -> Value {
+    pub fn input(&mut self, name: impl Into<SmolStr>, ty: Type) -> Value {
         let position = self.function.inputs.len() as u32;
         self.function.inputs.push(Slot { name: name.into(), ty });
         self.push(Operation::Input(position), ty)
     }
 
     /// A new output.
-    pub fn output(&mut self, name: impl Into<String>, value: Value) {
+    pub fn output(&mut self, name: impl Into<SmolStr>, value: Value) {
         let ty = self.ty(value);
         self.function.outputs.push((Slot { name: name.into(), ty }, value));
     }

@@ -20,6 +20,7 @@ pub use names::Names;
 pub use operands::Operands;
 
 use crate::intrinsic::Intrinsic;
+use smol_str::SmolStr;
 use std::sync::Arc;
 use texgraph_grammar::syntax::Span;
 
@@ -334,7 +335,7 @@ impl Operation {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Slot {
     /// As the author named it.
-    pub name: String,
+    pub name: SmolStr,
     /// Its type.
     pub ty: Type,
 }
@@ -352,7 +353,7 @@ pub struct Place {
 #[derive(Clone, Debug, Default)]
 pub struct Function {
     /// The node's (or texture's) name.
-    pub name: String,
+    pub name: SmolStr,
     /// What it takes.
     pub inputs: Vec<Slot>,
     /// What it gives.
@@ -367,9 +368,46 @@ pub struct Function {
     pub places: Vec<Place>,
     /// Written as a single expression: callers take its operations over instead of calling it.
     pub inline: bool,
+    /// Which function of the library it is, if it still is what the library made of it.
+    pub origin: Option<Origin>,
+}
+
+/// A function that the library made ahead, by its place in the library's list (see [`crate::ahead`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// As it is after checking, with the expressions it calls taken over.
+    Checked(u32),
+    /// As it is after all passes.
+    Finished(u32),
 }
 
 impl Function {
+    /// Has it use other functions in the place of those that it calls and folds over.
+    pub fn replace_functions(&mut self, mut f: impl FnMut(FunctionId) -> FunctionId) {
+        for operation in &mut self.values {
+            match operation {
+                Operation::Call(callee, _) => *callee = f(*callee),
+                Operation::Fold(fold) => {
+                    fold.body = f(fold.body);
+                    fold.condition = fold.condition.map(&mut f);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The functions that it calls and folds over, some of them often.
+    pub fn functions(&self) -> impl Iterator<Item = FunctionId> {
+        self.values.iter().flat_map(|operation| {
+            let (called, fold) = match operation {
+                Operation::Call(callee, _) => (Some(*callee), None),
+                Operation::Fold(fold) => (None, Some(fold.functions())),
+                _ => (None, None),
+            };
+            called.into_iter().chain(fold.into_iter().flatten())
+        })
+    }
+
     /// The operation of a value.
     pub fn operation(&self, value: Value) -> &Operation {
         &self.values[value.0 as usize]

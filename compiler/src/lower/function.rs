@@ -10,6 +10,7 @@ use crate::graph::{Function, FunctionId, Type};
 use crate::manifest::Form;
 use crate::naming::{Scope, camel_case};
 use naga::{Expression, Handle, Span};
+use smol_str::{SmolStr, format_smolstr};
 
 impl Lowering<'_> {
     /// Lowers function `index` of the graph; its callees are lowered already. `public` is the name
@@ -25,7 +26,6 @@ impl Lowering<'_> {
         };
         let mut scope = Scope::inside(&self.prefix);
         let arguments = self.arguments(source, &reads, &mut scope);
-        let is_struct = source.outputs.len() > 1;
         let result = self.result_type(source, &name);
         let mut function = naga::Function {
             name: Some(self.names.placeholder(name)),
@@ -49,23 +49,20 @@ impl Lowering<'_> {
         };
         self.results.push(body.finish(value));
         let handle = self.module.functions.append(function, Span::UNDEFINED);
-        let result = format!("{}_of", source.name.trim_start_matches('_'));
-        self.functions[index] = Some(Callee { handle, is_struct, result });
+        self.linked.add(source, handle);
+        self.functions[index] = Some(Callee::new(handle, source));
     }
 
     /// The type of a function's result: its only output, or a struct of all.
-    fn result_type(&mut self, source: &Function, name: &str) -> Handle<naga::Type> {
+    pub(super) fn result_type(&mut self, source: &Function, name: &str) -> Handle<naga::Type> {
         let types: Vec<Handle<naga::Type>> =
             source.outputs.iter().map(|(slot, _)| self.types.get(&mut self.module.types, slot.ty)).collect();
         match types.as_slice() {
             [single] => *single,
             _ => {
                 let members = source.outputs.iter().zip(types);
-                let members = members.map(|((slot, _), ty)| Member {
-                    name: slot.name.as_str().into(),
-                    ty,
-                    binding: None,
-                });
+                let members =
+                    members.map(|((slot, _), ty)| Member { name: slot.name.clone(), ty, binding: None });
                 self.structure(&camel_case(name), members.collect())
             }
         }
@@ -78,25 +75,25 @@ impl Lowering<'_> {
         reads: &Reads,
         scope: &mut Scope,
     ) -> Vec<naga::FunctionArgument> {
-        let mut slots: Vec<(String, Type)> = source.inputs.iter().map(|s| (s.name.clone(), s.ty)).collect();
+        let mut slots: Vec<(SmolStr, Type)> = source.inputs.iter().map(|s| (s.name.clone(), s.ty)).collect();
         for id in &reads.params {
             let param = &self.graph.params[id.0 as usize];
-            slots.push((param.name.clone(), param.ty));
+            slots.push((param.name.as_str().into(), param.ty));
         }
         for id in &reads.views {
             let view = &self.graph.views[id.0 as usize];
             let resource = &self.graph.resources[view.resource as usize];
-            slots.push((format!("{}_{}", resource.name, view.field), Type::View(view.view)));
+            slots.push((format_smolstr!("{}_{}", resource.name, view.field), Type::View(view.view)));
         }
         let mut arguments = Vec::new();
         for (wish, ty) in slots {
             let name = scope.name(&wish);
-            let sampler =
-                format!("{}_sampler", wish.rsplit_once('_').map_or(wish.as_str(), |(resource, _)| resource));
             let placeholder = self.names.placeholder(name);
             let handle = self.types.get(&mut self.module.types, ty);
             arguments.push(naga::FunctionArgument { name: Some(placeholder), ty: handle, binding: None });
             if has_sampler(ty) {
+                let resource = wish.rsplit_once('_').map_or(&*wish, |(resource, _)| resource);
+                let sampler = format_smolstr!("{resource}_sampler");
                 let placeholder = self.names.placeholder(scope.name(&sampler));
                 let ty = Types::sampler(&mut self.module.types);
                 arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding: None });

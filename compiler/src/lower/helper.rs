@@ -6,6 +6,7 @@ use super::types::{Types, numeric};
 use crate::intrinsic::Helper;
 use crate::naming::Scope;
 use naga::{BinaryOperator, Expression, Handle, Literal, Span};
+use smol_str::SmolStr;
 
 impl Lowering<'_> {
     /// The function, made when first needed.
@@ -13,9 +14,12 @@ impl Lowering<'_> {
         if let Some(handle) = self.helpers.get(&helper) {
             return *handle;
         }
-        let function = match helper {
-            Helper::Hash => self.hash(),
+        let name = match helper {
+            Helper::Hash => self.module_name("hash"),
         };
+        let function = self.link_helper(helper, &name).unwrap_or_else(|| match helper {
+            Helper::Hash => self.hash(name),
+        });
         let handle = self.module.functions.append(function, Span::UNDEFINED);
         self.results.push(Default::default());
         self.helpers.insert(helper, handle);
@@ -23,11 +27,10 @@ impl Lowering<'_> {
     }
 
     /// pcg4d: a linear congruential step, then twice a round of multiply-adds, xor-shift between.
-    fn hash(&mut self) -> naga::Function {
+    fn hash(&mut self, name: SmolStr) -> naga::Function {
         let ints = Types::of(&mut self.module.types, numeric(naga::Scalar::I32, 4));
         let words = Types::of(&mut self.module.types, numeric(naga::Scalar::U32, 4));
         let floats = Types::of(&mut self.module.types, numeric(naga::Scalar::F32, 4));
-        let name = self.module_name("hash");
         let mut scope = Scope::inside(&self.prefix);
         let argument = self.names.placeholder(scope.name("v"));
         let mut function = naga::Function {

@@ -11,6 +11,7 @@ mod fold;
 mod frame;
 mod function;
 mod helper;
+mod link;
 mod operation;
 mod outline;
 mod table;
@@ -19,14 +20,17 @@ mod wrap;
 
 use crate::contract::{Reads, reads_of_functions};
 use crate::graph::regions::Weights;
-use crate::graph::{Constant, FunctionId, Graph, Operation};
+use crate::graph::{Constant, Function, FunctionId, Graph, Operation};
 use crate::intrinsic::Helper;
 use crate::manifest::Manifest;
 use crate::naming::{self, Names, Scope};
+pub use link::Objects;
+
 use body::Results;
+use link::Linked;
 use naga::{Handle, Span};
 use rustc_hash::FxHashMap;
-use smol_str::SmolStr;
+use smol_str::{SmolStr, format_smolstr};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use types::Types;
@@ -53,7 +57,14 @@ struct Callee {
     /// Its result is a struct, one member for each output.
     is_struct: bool,
     /// What a result is called that has no name of its own.
-    result: String,
+    result: SmolStr,
+}
+
+impl Callee {
+    fn new(handle: Handle<naga::Function>, source: &Function) -> Callee {
+        let result = format_smolstr!("{}_of", source.name.trim_start_matches('_'));
+        Callee { handle, is_struct: source.outputs.len() > 1, result }
+    }
 }
 
 /// Everything while a module is being made.
@@ -74,26 +85,16 @@ struct Lowering<'a> {
     helpers: BTreeMap<Helper, Handle<naga::Function>>,
     tables: FxHashMap<Arc<[Constant]>, Handle<naga::Constant>>,
     results: Vec<Results>,
+    /// What was lowered ahead.
+    objects: &'a Objects,
+    linked: Linked,
 }
 
-/// Lowers a graph whose passes have run, wrapped as its manifest says.
-pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
+/// Lowers a graph whose passes have run, wrapped as its manifest says. Functions that were lowered
+/// ahead are taken over.
+pub fn lower(graph: &Graph, manifest: &Manifest, objects: &Objects) -> Lowered {
     let graph = &*outline::outlined(graph);
-    let mut l = Lowering {
-        graph,
-        manifest,
-        module: naga::Module::default(),
-        types: Types::default(),
-        names: Names::default(),
-        scope: Scope::default(),
-        prefix: naming::identifier(&manifest.texture),
-        weights: Weights::of(graph),
-        reads: reads_of_functions(graph),
-        functions: graph.functions.iter().map(|_| None).collect(),
-        helpers: BTreeMap::new(),
-        tables: FxHashMap::default(),
-        results: Vec::new(),
-    };
+    let mut l = Lowering::new(graph, manifest, naming::identifier(&manifest.texture), objects);
     // The manifest's names are the ones hosts know.
     let entry = manifest.passes.last().map_or(String::new(), |pass| pass.entry_point.clone());
     l.scope.take(&entry);
@@ -104,13 +105,36 @@ pub fn lower(graph: &Graph, manifest: &Manifest) -> Lowered {
     }
     let in_place = in_place(graph);
     for i in (0..graph.functions.len()).filter(|i| !in_place.contains(i)) {
-        l.function(i, &entry);
+        if !l.link(i) {
+            l.function(i, &entry);
+        }
     }
     l.wrap(&entry);
     Lowered { module: l.module, names: l.names, results: l.results }
 }
 
-impl Lowering<'_> {
+impl<'a> Lowering<'a> {
+    /// An empty module all of whose names begin with `prefix`.
+    fn new(graph: &'a Graph, manifest: &'a Manifest, prefix: SmolStr, objects: &'a Objects) -> Lowering<'a> {
+        Lowering {
+            graph,
+            manifest,
+            module: naga::Module::default(),
+            types: Types::default(),
+            names: Names::default(),
+            scope: Scope::default(),
+            prefix,
+            weights: Weights::of(graph),
+            reads: reads_of_functions(graph),
+            functions: graph.functions.iter().map(|_| None).collect(),
+            helpers: BTreeMap::new(),
+            tables: FxHashMap::default(),
+            results: Vec::new(),
+            objects,
+            linked: Linked::default(),
+        }
+    }
+
     /// A module-level name that begins with the texture's.
     fn module_name(&mut self, wish: &str) -> SmolStr {
         let full = format!("{}_{}", self.prefix, naming::identifier(wish));

@@ -3,6 +3,7 @@
 
 use crate::graph::regions::{MAX_DEPTH, Weights};
 use crate::graph::{Builder, Fold, Function, FunctionId, Graph, Operation, Value};
+use smol_str::{SmolStr, format_smolstr};
 use std::borrow::Cow;
 
 /// The blocks of a fold that stays where it is; the rest of [`MAX_DEPTH`] is left to branches.
@@ -33,7 +34,7 @@ struct Outlining {
 
 impl Outlining {
     fn function(&mut self, function: &Function) {
-        let mut copy = function.clone();
+        let mut copy = Function { origin: None, ..function.clone() };
         for operation in &mut copy.values {
             match operation {
                 Operation::Call(callee, _) => *callee = self.ids[callee.0 as usize],
@@ -61,20 +62,20 @@ impl Outlining {
 
     /// The call of a function that is nothing but a fold over its inputs.
     fn called(&mut self, around: &Function, fold: &Fold) -> Operation {
-        let mut builder = Builder::new(format!("{}_fold", around.name));
+        let mut builder = Builder::new(format_smolstr!("{}_fold", around.name));
         let step = &self.functions[fold.body.0 as usize];
         let places = fold.starts.len();
         // The step takes the accumulators, its number, the captures; the fold the starts, the
         // number of steps, the captures.
-        let names: Vec<String> = step.inputs.iter().map(|slot| slot.name.clone()).collect();
+        let names: Vec<SmolStr> = step.inputs.iter().map(|slot| slot.name.clone()).collect();
         let mut operands: Vec<Value> = Vec::new();
         let inner = fold.map_operands(|operand| {
             let name = names.get(operands.len()).filter(|_| operands.len() != places);
-            let name = name.map_or("steps", String::as_str);
+            let name = name.map_or("steps", SmolStr::as_str);
             operands.push(operand);
             builder.input(name, around.ty(operand))
         });
-        let outputs: Vec<String> = step.outputs.iter().map(|(slot, _)| slot.name.clone()).collect();
+        let outputs: Vec<SmolStr> = step.outputs.iter().map(|(slot, _)| slot.name.clone()).collect();
         let accumulators = builder.fold(inner);
         outputs.into_iter().zip(accumulators).for_each(|(name, value)| builder.output(name, value));
         Operation::Call(self.add(builder.finish()), operands.as_slice().into())

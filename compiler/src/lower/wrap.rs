@@ -8,6 +8,7 @@ use crate::manifest::{Form, Source};
 use crate::naming::{Scope, camel_case};
 use naga::{AddressSpace, Binding, Expression, GlobalVariable, Handle, Literal, Span};
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 /// The globals of the module.
 struct Globals {
@@ -18,7 +19,7 @@ struct Globals {
 /// The uniform block with its members' names and types, in order.
 struct UniformBlock {
     variable: Handle<GlobalVariable>,
-    members: Vec<(String, Type)>,
+    members: Vec<(SmolStr, Type)>,
 }
 
 impl Lowering<'_> {
@@ -75,9 +76,9 @@ impl Lowering<'_> {
     /// The params that are read, then the inputs that are the same for a draw, in offset order.
     fn uniform_block(&mut self) -> Option<UniformBlock> {
         let uniform = self.manifest.uniform.as_ref()?;
-        let mut members: Vec<(u32, String, Type)> = Vec::new();
+        let mut members: Vec<(u32, SmolStr, Type)> = Vec::new();
         for (param, public) in self.graph.params.iter().zip(&self.manifest.params) {
-            members.extend(public.offset.map(|offset| (offset, param.name.clone(), param.ty)));
+            members.extend(public.offset.map(|offset| (offset, param.name.as_str().into(), param.ty)));
         }
         let entry = self.graph.function(self.graph.entry());
         for (slot, public) in entry.inputs.iter().zip(&self.manifest.inputs) {
@@ -96,7 +97,7 @@ impl Lowering<'_> {
                 // A bool can't stand in a uniform block.
                 let kind = if ty.scalar() == Some(Scalar::Bool) { naga::Scalar::U32 } else { scalar_of(*ty) };
                 let ty = Types::of(&mut self.module.types, numeric(kind, ty.width()));
-                Member { name: name.as_str().into(), ty, binding: None }
+                Member { name: name.clone(), ty, binding: None }
             })
             .collect();
         let ty = self.structure(&camel_case(&uniform.name), fields);
@@ -167,7 +168,7 @@ impl Lowering<'_> {
         let several = entry.outputs.len() > 1;
         let result = if several {
             let members = entry.outputs.iter().enumerate().map(|(i, (slot, _))| Member {
-                name: slot.name.as_str().into(),
+                name: slot.name.clone(),
                 ty: floats,
                 binding: Some(at_location(i as u32, true)),
             });
@@ -226,12 +227,12 @@ impl Lowering<'_> {
         let mut scope = Scope::inside(&self.prefix);
         let inputs = entry.inputs.iter().map(|slot| {
             let ty = self.types.get(&mut self.module.types, slot.ty);
-            Member { name: slot.name.as_str().into(), ty, binding: None }
+            Member { name: slot.name.clone(), ty, binding: None }
         });
         let inputs: Vec<Member> = inputs.collect();
         let outputs = entry.outputs.iter().map(|(slot, _)| {
             let ty = self.types.get(&mut self.module.types, slot.ty);
-            Member { name: slot.name.as_str().into(), ty, binding: None }
+            Member { name: slot.name.clone(), ty, binding: None }
         });
         let outputs: Vec<Member> = outputs.collect();
         let mut function = naga::Function { name: Some(self.names.placeholder(name)), ..Default::default() };

@@ -2,22 +2,25 @@
 //! or folder each. They follow arena order, take time in proportion to the graph and never recurse.
 
 pub mod differentiate;
+mod finished;
 pub mod fold_constants;
 pub mod hoist;
 pub mod inline;
 mod liveness;
 pub mod remove_dead;
 
+pub use finished::Finished;
+
 use crate::graph::Graph;
 
 /// Everything between checking and lowering, each pass once. `fold_constants` is no step: it is
-/// applied wherever a value is made.
-pub fn run(graph: Graph) -> Graph {
+/// applied wherever a value is made. What is `finished` already is taken over.
+pub fn run(graph: Graph, finished: &Finished) -> Graph {
     // First, so that all others see whole expressions, and no loop where there need not be one.
     let graph = inline::run(graph);
     // Before hoisting, so that a guard may go where its operands are the same for a whole draw.
-    let graph = differentiate::run(graph);
+    let graph = differentiate::run(graph, finished);
     let graph = hoist::run(graph);
     // Last: all of them leave things behind that nobody reads.
-    remove_dead::run(graph)
+    finished::settled(remove_dead::run(graph))
 }

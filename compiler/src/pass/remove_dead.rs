@@ -6,6 +6,11 @@ use crate::graph::{Function, FunctionId, Graph, Operation, Value};
 
 /// Keeps what the entry's outputs need. The entry keeps its inputs: they are the contract.
 pub fn run(graph: Graph) -> Graph {
+    with_places(graph).0
+}
+
+/// The same, and where each function came to stand.
+pub fn with_places(graph: Graph) -> (Graph, Vec<Option<FunctionId>>) {
     let mut live = Liveness::of(&graph);
     if let Some(inputs) = live.inputs.last_mut() {
         inputs.fill(true);
@@ -21,7 +26,7 @@ pub fn run(graph: Graph) -> Graph {
             functions.push(function);
         }
     }
-    Graph { functions, ..graph }
+    (Graph { functions, ..graph }, removing.ids)
 }
 
 /// Where each of a list comes to stand when the dead ones are gone.
@@ -85,6 +90,12 @@ impl Removing {
             *value = self.values[value.0 as usize];
         }
         self.outputs.push(places(&self.live.outputs[place]));
+        let is_whole = |live: &[bool]| !live.contains(&false);
+        let live = &self.live;
+        if !(is_whole(&live.values[place]) && is_whole(&live.inputs[place]) && is_whole(&live.outputs[place]))
+        {
+            function.origin = None;
+        }
     }
 
     fn id(&self, old: FunctionId) -> FunctionId {

@@ -1,8 +1,9 @@
 //! Backward, callers first: which values need a tangent, and which variants that takes.
 
 use super::{Analysis, Inputs, Layout, Variant, depend, marked};
-use crate::graph::{Fold, Function, FunctionId, Level, Operation, Type, Value};
+use crate::graph::{Fold, Function, FunctionId, Graph, Level, Operation, Origin, Type, Value};
 use crate::input::is_per_draw;
+use crate::pass::finished::Done;
 use rustc_hash::FxHashMap;
 use smallvec::{SmallVec, smallvec};
 
@@ -18,37 +19,66 @@ pub struct Demand {
     pub inner: FxHashMap<Value, Variant>,
 }
 
-/// What is wanted of every function.
-pub struct Requests {
-    variants: Vec<Vec<Variant>>,
-    demands: Vec<Vec<Demand>>,
+/// What it takes to have a variant.
+pub enum Work<'a> {
+    /// Taking it over.
+    Finished(&'a Done),
+    /// Making it, which needs this.
+    Make(Demand),
 }
 
-impl Requests {
+impl Work<'_> {
+    /// The functions that a function calls, and what is asked of them.
+    pub fn calls(&self, function: &Function) -> Vec<(u32, Variant)> {
+        let Work::Make(demand) = self else { return Vec::new() };
+        let calls = function.iter().filter_map(|(value, operation)| match operation {
+            Operation::Call(callee, _) => Some((callee.0, demand.inner.get(&value)?.clone())),
+            _ => None,
+        });
+        calls.collect()
+    }
+}
+
+/// What is wanted of every function.
+pub struct Requests<'a> {
+    variants: Vec<Vec<Variant>>,
+    works: Vec<Vec<Work<'a>>>,
+}
+
+impl<'a> Requests<'a> {
     /// Walks from the entry to what needs nothing else.
-    pub fn of(analysis: &Analysis) -> Requests {
+    pub fn of(analysis: &Analysis<'a>) -> Requests<'a> {
         let functions = &analysis.graph.functions;
         let mut requests = Requests {
             variants: functions.iter().map(|_| Vec::new()).collect(),
-            demands: functions.iter().map(|_| Vec::new()).collect(),
+            works: functions.iter().map(|_| Vec::new()).collect(),
         };
         let Some(entry) = functions.last() else { return requests };
         requests.variants[functions.len() - 1].push(of_entry(entry));
         for i in (0..functions.len()).rev() {
             let variants = std::mem::take(&mut requests.variants[i]);
             for variant in &variants {
-                let demand = Demanding::new(analysis, i, variant).run();
-                requests.add_inner(&functions[i], &demand);
-                requests.demands[i].push(demand);
+                let work = match analysis.done(i, variant) {
+                    Some(done) => {
+                        requests.add_done(analysis.graph, i, done);
+                        Work::Finished(done)
+                    }
+                    None => {
+                        let demand = Demanding::new(analysis, i, variant).run();
+                        requests.add_inner(&functions[i], &demand);
+                        Work::Make(demand)
+                    }
+                };
+                requests.works[i].push(work);
             }
             requests.variants[i] = variants;
         }
         requests
     }
 
-    /// The variants of a function, each with what it needs.
-    pub fn of_function(&self, i: usize) -> impl Iterator<Item = (&Variant, &Demand)> {
-        self.variants[i].iter().zip(&self.demands[i])
+    /// The variants of a function, each with what it takes to have it.
+    pub fn of_function(&self, i: usize) -> impl Iterator<Item = (&Variant, &Work<'a>)> {
+        self.variants[i].iter().zip(&self.works[i])
     }
 
     /// Which variant of a function serves a request.
@@ -72,6 +102,15 @@ impl Requests {
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// A finished function asks the same of what it calls as when it was made.
+    fn add_done(&mut self, graph: &Graph, i: usize, done: &Done) {
+        for callee in graph.functions[i].functions() {
+            let origin = graph.function(callee).origin;
+            let asked = done.inner.iter().filter(|(id, _)| origin == Some(Origin::Checked(*id)));
+            asked.for_each(|(_, variant)| self.add(callee, variant, MOST_VARIANTS));
         }
     }
 
@@ -173,7 +212,7 @@ impl<'a> Demanding<'a> {
     }
 
     fn call(&mut self, call: Value, callee: FunctionId, arguments: &[Value]) -> Variant {
-        let callee = self.analysis.of(callee);
+        let callee = self.analysis.known(callee);
         let mut wanted = smallvec![false; callee.outputs.len()];
         let mut useful = callee.needed;
         for output in self.outputs.remove(&call).unwrap_or_default() {
@@ -194,9 +233,9 @@ impl<'a> Demanding<'a> {
     }
 
     fn fold(&mut self, value: Value, fold: &Fold) -> Variant {
-        let (body, layout) = (self.analysis.of(fold.body), self.analysis.layout(fold.body));
+        let (body, layout) = (self.analysis.known(fold.body), self.analysis.layout(fold.body));
         let first = fold.starts.len() + 1;
-        let condition = fold.condition.map_or(0, |condition| self.analysis.of(condition).needed);
+        let condition = fold.condition.map_or(0, |condition| self.analysis.known(condition).needed);
         let outputs = self.outputs.remove(&value).unwrap_or_default();
         let wanted = outputs.iter().fold(0, |all, output| all | layout.bit(*output as usize));
         let useful = depend::through_steps(layout, &body.outputs, wanted | body.needed | condition);

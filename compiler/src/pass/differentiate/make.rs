@@ -16,6 +16,7 @@ type Few<T> = SmallVec<[T; 4]>;
 const AXES: [(Axis, &str); 2] = [(Axis::X, "dx"), (Axis::Y, "dy")];
 
 /// A variant that was made.
+#[derive(Clone)]
 pub struct Made {
     /// The function that it became.
     pub id: FunctionId,
@@ -30,7 +31,7 @@ pub struct Making<'a> {
     function: &'a Function,
     variant: &'a Variant,
     demand: &'a Demand,
-    requests: &'a Requests,
+    requests: &'a Requests<'a>,
     made: &'a [Vec<Made>],
     builder: Builder,
     inputs: Vec<Value>,
@@ -46,7 +47,7 @@ impl<'a> Making<'a> {
         place: usize,
         variant: &'a Variant,
         demand: &'a Demand,
-        requests: &'a Requests,
+        requests: &'a Requests<'a>,
         made: &'a [Vec<Made>],
     ) -> Making<'a> {
         let function = &analysis.graph.functions[place];

@@ -21,10 +21,13 @@ mod demand;
 mod depend;
 mod make;
 
-use crate::graph::{FunctionId, Graph, Operation, Type, Value};
-use demand::Requests;
+use super::finished::{Done, Finished};
+use crate::graph::{Function, FunctionId, Graph, Operation, Type, Value};
+use demand::{Requests, Work};
 use depend::Known;
-use make::{Made, Making};
+pub use make::Made;
+use make::Making;
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 /// A set of inputs of a function. Those from bit 127 on share it: they may count as dependent when
@@ -79,8 +82,8 @@ impl Layout {
 }
 
 /// A function with tangents: inputs that change, and outputs whose change is wanted.
-#[derive(Clone, PartialEq, Eq)]
-struct Variant {
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Variant {
     changing: Inputs,
     wanted: SmallVec<[bool; 16]>,
 }
@@ -103,10 +106,23 @@ struct Analysis<'a> {
     graph: &'a Graph,
     layouts: Vec<Layout>,
     known: Vec<Known>,
+    finished: &'a Finished,
 }
 
-impl Analysis<'_> {
-    fn of(&self, id: FunctionId) -> &Known {
+impl<'a> Analysis<'a> {
+    fn of(graph: &'a Graph, finished: &'a Finished) -> Analysis<'a> {
+        let layouts = Layout::all(graph);
+        let known = depend::analyse(graph, &layouts);
+        Analysis { graph, layouts, known, finished }
+    }
+
+    /// A variant of a function that has been through all passes already.
+    fn done(&self, place: usize, variant: &Variant) -> Option<&'a Done> {
+        let is_called = self.layouts[place] == Layout::CALLED;
+        self.finished.find(&self.graph.functions[place], variant).filter(|_| is_called)
+    }
+
+    fn known(&self, id: FunctionId) -> &Known {
         &self.known[id.0 as usize]
     }
 
@@ -116,25 +132,65 @@ impl Analysis<'_> {
 }
 
 /// Replaces every `Level::Auto` by gradients, every inner derivative by its value, and every total
-/// operation by what a shader has.
-pub fn run(graph: Graph) -> Graph {
-    let layouts = Layout::all(&graph);
-    let known = depend::analyse(&graph, &layouts);
-    let analysis = Analysis { graph: &graph, layouts, known };
+/// operation by what a shader has. What is `finished` already is taken over.
+pub fn run(graph: Graph, finished: &Finished) -> Graph {
+    let analysis = Analysis::of(&graph, finished);
+    let (functions, _) = make_all(&analysis, &Requests::of(&analysis));
+    Graph { functions, ..graph }
+}
+
+/// What became of a variant of a function.
+pub struct MadeOf {
+    /// The place of the function in the graph that was.
+    pub function: u32,
+    /// Which variant.
+    pub variant: Variant,
+    /// What it is now.
+    pub made: Made,
+    /// The functions that it calls, by their places in the graph that was, and what it asks of them.
+    pub inner: Vec<(u32, Variant)>,
+}
+
+/// The same with nothing finished, and what became of each variant of the functions that are called.
+pub fn with_variants(graph: Graph) -> (Graph, Vec<MadeOf>) {
+    let nothing = Finished::default();
+    let analysis = Analysis::of(&graph, &nothing);
     let requests = Requests::of(&analysis);
+    let (functions, made) = make_all(&analysis, &requests);
+    let mut variants = Vec::new();
+    for (i, made) in made.into_iter().enumerate().filter(|(i, _)| analysis.layouts[*i] == Layout::CALLED) {
+        let own = requests.of_function(i).zip(made);
+        variants.extend(own.map(|((variant, work), made)| MadeOf {
+            function: i as u32,
+            variant: variant.clone(),
+            made,
+            inner: work.calls(&analysis.graph.functions[i]),
+        }));
+    }
+    (Graph { functions, ..graph }, variants)
+}
+
+/// The functions of all variants, and which they are.
+fn make_all(analysis: &Analysis, requests: &Requests) -> (Vec<Function>, Vec<Vec<Made>>) {
     let mut functions = Vec::new();
-    let mut made: Vec<Vec<Made>> = Vec::with_capacity(graph.functions.len());
-    for i in 0..graph.functions.len() {
-        let variants = requests.of_function(i).map(|(variant, demand)| {
-            let making = Making::new(&analysis, i, variant, demand, &requests, &made);
-            let (function, tangents) = making.run();
-            functions.push(function);
-            Made { id: FunctionId(functions.len() as u32 - 1), tangents }
+    let mut taken = FxHashMap::default();
+    let mut made: Vec<Vec<Made>> = Vec::with_capacity(analysis.graph.functions.len());
+    for i in 0..analysis.graph.functions.len() {
+        let variants = requests.of_function(i).map(|(variant, work)| match work {
+            Work::Finished(done) => {
+                let id = analysis.finished.take_over(done, &mut functions, &mut taken);
+                Made { id, tangents: done.tangents.clone() }
+            }
+            Work::Make(demand) => {
+                let (function, tangents) = Making::new(analysis, i, variant, demand, requests, &made).run();
+                functions.push(function);
+                Made { id: FunctionId(functions.len() as u32 - 1), tangents }
+            }
         });
         let variants = variants.collect();
         made.push(variants);
     }
-    Graph { functions, ..graph }
+    (functions, made)
 }
 
 /// Whether a set of flags holds a value.

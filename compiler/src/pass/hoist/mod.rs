@@ -111,8 +111,9 @@ impl Hoisting<'_> {
             Some((before, rest)) => (rest, Some(before)),
             None => (function, None),
         };
-        if before.is_none() {
+        if before.is_none() && !padding.is_empty() {
             rest.inputs.extend(padding);
+            rest.origin = None;
         }
         let simple =
             |value: &Value| matches!(rest.operation(*value), Operation::Input(_) | Operation::Constant(_));
@@ -122,6 +123,9 @@ impl Hoisting<'_> {
         if let Some(partner) = partner {
             // Body and condition have the same captures.
             let moved = self.moved(place);
+            if !moved.is_empty() {
+                self.functions[partner].origin = None;
+            }
             self.functions[partner].inputs.extend(moved);
         }
     }

@@ -46,6 +46,22 @@ pub fn run(mut graph: Graph) -> Graph {
     Graph { functions: made.functions, ..graph }
 }
 
+/// The functions of a graph, each in its place: what they call that is a single expression is taken
+/// over, but stays for others to take over.
+pub fn ahead(graph: &Graph) -> Vec<Function> {
+    let plan = Plan::of(graph);
+    let mut made = Made { ids: vec![None; graph.functions.len()], functions: Vec::new() };
+    let mut allowance = MOST_WRITTEN_OUT;
+    for (i, (function, fate)) in graph.functions.iter().zip(&plan.fates).enumerate() {
+        let builder = Builder::with_capacity(function.name.clone(), function.values.len());
+        let expanding = Expanding { graph, made: &made, builder, allowance: &mut allowance };
+        let new = Function { inline: function.inline, ..expanding.run(function) };
+        made.functions.push(new);
+        made.ids[i] = (*fate != Fate::TakenOver).then_some(FunctionId(i as u32));
+    }
+    made.functions
+}
+
 /// The functions that are done.
 struct Made {
     functions: Vec<Function>,
