@@ -301,6 +301,7 @@ fn token_at(text: &[u8], start: usize) -> Option<(usize, Token)> {
 }
 
 /// The token that a text begins with, and its length.
+#[inline]
 fn token(text: &[u8]) -> Option<(usize, Token)> {
     let (numbered, is_placeholder) = match text {
         [b'z', numbered @ ..] => (numbered, true),

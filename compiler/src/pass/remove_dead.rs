@@ -16,8 +16,13 @@ pub fn with_places(graph: Graph) -> (Graph, Vec<Option<FunctionId>>) {
         inputs.fill(true);
     }
     let entry = graph.functions.len().saturating_sub(1);
-    let mut removing =
-        Removing { ids: vec![None; graph.functions.len()], live, outputs: Vec::new(), values: Vec::new() };
+    let mut removing = Removing {
+        live,
+        ids: vec![None; graph.functions.len()],
+        outputs: Vec::new(),
+        keeps_shape: vec![false; graph.functions.len()],
+        values: Vec::new(),
+    };
     let mut functions = Vec::with_capacity(graph.functions.len());
     for (i, mut function) in graph.functions.into_iter().enumerate() {
         if i == entry || removing.live.outputs[i].contains(&true) {
@@ -53,13 +58,34 @@ struct Removing {
     ids: Vec<Option<FunctionId>>,
     /// For each function that is left where its outputs came to stand.
     outputs: Vec<Vec<u32>>,
+    /// Which functions keep all inputs and outputs.
+    keeps_shape: Vec<bool>,
     /// The new values of the function being looked at.
     values: Vec<Value>,
 }
 
 impl Removing {
-    /// What is left is in order and nothing in it folds, so it moves up as it is.
+    /// Removes what is dead from one function, after all that it calls.
     fn function(&mut self, place: usize, function: &mut Function) {
+        let is_whole = |live: &[bool]| !live.contains(&false);
+        let (values, inputs, outputs) =
+            (&self.live.values[place], &self.live.inputs[place], &self.live.outputs[place]);
+        self.outputs.push(places(outputs));
+        let keeps_shape = is_whole(inputs) && is_whole(outputs);
+        let is_untouched = keeps_shape
+            && is_whole(values)
+            && function.functions().all(|used| self.keeps_shape[used.0 as usize]);
+        if is_untouched {
+            function.replace_functions(|used| self.id(used));
+        } else {
+            self.rest(place, function);
+            function.origin = None;
+        }
+        self.keeps_shape[place] = keeps_shape;
+    }
+
+    /// What is left is in order and nothing in it folds, so it moves up as it is.
+    fn rest(&mut self, place: usize, function: &mut Function) {
         let inputs = places(&self.live.inputs[place]);
         self.values.clear();
         let mut next = Value(0);
@@ -88,13 +114,6 @@ impl Removing {
         retain(&mut function.outputs, &self.live.outputs[place]);
         for (_, value) in &mut function.outputs {
             *value = self.values[value.0 as usize];
-        }
-        self.outputs.push(places(&self.live.outputs[place]));
-        let is_whole = |live: &[bool]| !live.contains(&false);
-        let live = &self.live;
-        if !(is_whole(&live.values[place]) && is_whole(&live.inputs[place]) && is_whole(&live.outputs[place]))
-        {
-            function.origin = None;
         }
     }
 
