@@ -1,7 +1,8 @@
 //! The plane in perspective: what a camera sees of `uv`, and textures on it on CPU and GPU.
 //!
 //! GPU tests are shown as ignored where there is no adapter; `TEXGRAPH_GPU=required` makes that a
-//! failure.
+//! failure. `TEXGRAPH_WGSL=FOLDER` writes every example's shader on the ground to `FOLDER/plane`, for
+//! `tests/tint`.
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::collections::HashMap;
@@ -33,6 +34,7 @@ fn main() {
         Trial::test("the_view_goes_to_the_eye", the_view_goes_to_the_eye),
         Trial::test("derivatives_are_those_of_the_place", derivatives_are_those_of_the_place),
         Trial::test("far_away_is_the_mean", far_away_is_the_mean),
+        Trial::test("every_example_lies_on_the_ground", every_example_lies_on_the_ground),
         Trial::test("wires_lie_on_the_ground_too", wires_lie_on_the_ground_too),
     ];
     for file in ["examples/tiling.tex", "tests/golden/branches.tex", "examples/mixed.tex"] {
@@ -174,6 +176,24 @@ fn far_away_is_the_mean() -> Result<(), Failed> {
         assert!(near(mean_far[i], mean_close[i], 4.0 / 255.0), "{mean_far:?} {mean_close:?}");
         let widest = far.iter().map(|p| (p[i] - mean_far[i]).abs()).fold(0.0, f32::max);
         assert!(widest < 4.0 / 255.0, "channel {i} strays by {widest}");
+    }
+    Ok(())
+}
+
+/// It compiles, so naga takes it.
+fn every_example_lies_on_the_ground() -> Result<(), Failed> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("examples");
+    let written = std::env::var_os("TEXGRAPH_WGSL").map(|folder| PathBuf::from(folder).join("plane"));
+    for entry in std::fs::read_dir(folder)? {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        let Some(stem) = name.strip_suffix(".tex") else { continue };
+        let (program, _) = loaded(&format!("examples/{name}"), plane([16, 9], REPEAT))?;
+        let wgsl = &program.texture().wgsl;
+        assert!(wgsl.contains("dpdx") || !wgsl.contains("textureSampleGrad"), "{name}");
+        if let Some(folder) = &written {
+            std::fs::create_dir_all(folder)?;
+            std::fs::write(folder.join(format!("{stem}.wgsl")), wgsl)?;
+        }
     }
     Ok(())
 }
