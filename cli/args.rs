@@ -39,8 +39,11 @@ Examples:
   texgraph render tiling.tex -o tiling.png
   texgraph render walls.tex:bricks -o bricks.png --size 512x512 --set scale=2 --set tint=#8d8f94
   texgraph render tiling.tex -o corner.png --region 0,0,0.25,0.25
-The picture shows a rectangle of `uv`, (0, 0) at its top left. Colours are written with 8 bits,
-other outputs as 16-bit linear data.";
+  texgraph render tiling.tex -o ground.png --view plane --repeat 4 --size 1280x720
+The flat view shows a rectangle of `uv`, (0, 0) at its top left. The plane is seen from above it, up to
+the horizon at a quarter of the picture's height, with the unit square of `uv` --repeat times along
+the lower edge; what is above the horizon is #a4b6c9 in a `color`, 0 in other outputs. Colours are
+written with 8 bits, other outputs as 16-bit linear data.";
 
 const GRAPH: &str = "\
 Examples:
@@ -244,6 +247,13 @@ pub struct Render {
     #[arg(long, value_name = "X0,Y0,X1,Y1", default_value = "0,0,1,1", value_parser = region)]
     #[arg(allow_hyphen_values = true)]
     pub region: [f64; 4],
+    /// How the texture is looked at
+    #[arg(long, value_enum, default_value_t)]
+    pub view: View,
+    /// Unit squares of `uv` across the picture, in the flat view also down it, instead of --region
+    #[arg(long, value_name = "N", default_value = "1", value_parser = repeat)]
+    #[arg(conflicts_with = "region")]
+    pub repeat: f32,
     /// Set a param: a number, true or false, components with commas, or a colour (#rrggbb)
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
@@ -262,6 +272,15 @@ pub struct Render {
     pub verbose: bool,
     #[command(flatten)]
     pub common: Common,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum View {
+    /// A rectangle of `uv` fills the picture
+    #[default]
+    Flat,
+    /// On the ground, in perspective, up to the horizon
+    Plane,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -350,6 +369,15 @@ fn region(text: &str) -> Result<[f64; 4], String> {
         return Err("the region is empty".into());
     }
     Ok(bounds)
+}
+
+/// The most unit squares across a picture.
+const MAX_REPEAT: f32 = 65_536.0;
+
+fn repeat(text: &str) -> Result<f32, String> {
+    let number = finite(text)? as f32;
+    let fits = number > 0.0 && number <= MAX_REPEAT;
+    if fits { Ok(number) } else { Err(format!("it is above 0 and at most {MAX_REPEAT}")) }
 }
 
 fn seconds(text: &str) -> Result<f32, String> {

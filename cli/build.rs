@@ -64,6 +64,7 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
         group: args.group.unwrap_or(group),
         first_binding: args.first_binding.unwrap_or(first_binding),
         profile,
+        plane: None,
     };
     let mut compiled = program.compile(&options)?;
     let mut tables = program.load(&mut compiled)?;

@@ -68,7 +68,7 @@ fn stdin() -> Result<(String, String), Problem> {
         .read_to_end(&mut bytes)
         .map_err(|error| Problem::Input(format!("standard input can't be read: {error}")))?;
     if bytes.len() as u64 == limit {
-        return Err(Problem::Input(format!("standard input has more than {MAX_BYTES} bytes")));
+        return Err(Problem::Input(format!("standard input has more than {} MiB", MAX_BYTES >> 20)));
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let end = error.utf8_error().valid_up_to();

@@ -4,7 +4,7 @@
 //! FILE:TEXTURE ─compile─▶ program ─load─▶ tables ─render─▶ picture ─▶ OUT.png
 //! ```
 
-use crate::args::{Backend, Render};
+use crate::args::{Backend, Render, View};
 use crate::output;
 use crate::problem::Problem;
 use crate::program::{self, Program};
@@ -13,12 +13,15 @@ use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use texgraph_compiler::{Compiled, Options};
+use texgraph_compiler::{Compiled, Options, Plane};
 use texgraph_runtime::render::{self, Renderer, Request};
 use texgraph_runtime::settings::Settings;
 
 /// Renders shorter than this show no progress: a bar that only flashes is a nuisance.
 const PATIENCE: Duration = Duration::from_millis(700);
+
+/// What a flat picture shows of `uv`, and where in a picture a pixel of the plane is.
+const UNIT_SQUARE: [f64; 4] = [0.0, 0.0, 1.0, 1.0];
 
 /// Renders a texture.
 ///
@@ -26,10 +29,12 @@ const PATIENCE: Duration = Duration::from_millis(700);
 /// Anything is wrong; the old picture is then as it was.
 pub fn run(args: &Render) -> Result<(), Problem> {
     check_target(&args.output_file)?;
+    let plane = plane(args)?;
     let (file, texture) = program::split(&args.file);
     let library = program::library()?;
     let program = Program::open(&library, &file, args.common.allow_outside)?;
-    let mut compiled = compile(&program, texture, args.output.as_deref())?;
+    let options = Options { texture, plane, ..Options::default() };
+    let mut compiled = compile(&program, options, args.output.as_deref())?;
     let request = request(args, &compiled)?;
     let tables = program.load(&mut compiled)?;
     let renderer = Renderer::new(match args.backend {
@@ -55,15 +60,25 @@ fn check_target(path: &Path) -> Result<(), Problem> {
     output::try_out(path)
 }
 
+/// The camera, unless the view is flat.
+fn plane(args: &Render) -> Result<Option<Plane>, Problem> {
+    match args.view {
+        View::Flat => Ok(None),
+        View::Plane if args.region != UNIT_SQUARE => {
+            Err(Problem::Usage("--region is for the flat view; the plane takes --repeat".into()))
+        }
+        View::Plane => {
+            let [width, height] = args.size.map(|side| side as f32);
+            Ok(Some(Plane { repeat: args.repeat, aspect: width / height }))
+        }
+    }
+}
+
 /// Compiles the wanted output alone. Which outputs there are is known only after compiling, so
 /// without a name that happens twice: it takes milliseconds.
-fn compile(
-    program: &Program<'_>,
-    texture: Option<String>,
-    output: Option<&str>,
-) -> Result<Compiled, Problem> {
+fn compile(program: &Program<'_>, mut options: Options, output: Option<&str>) -> Result<Compiled, Problem> {
     let wanted = |output: &str| Some(vec![output.to_owned()]);
-    let mut options = Options { texture, outputs: output.and_then(wanted), ..Options::default() };
+    options.outputs = output.and_then(wanted);
     let compiled = program.compile(&options)?;
     let outputs = &compiled.program.manifest.outputs;
     if outputs.len() <= 1 {
@@ -79,7 +94,12 @@ fn request(args: &Render, compiled: &Compiled) -> Result<Request, Problem> {
     for setting in &args.set {
         settings.parse(&compiled.program.manifest, setting)?;
     }
-    Ok(Request { size: args.size, region: args.region, time: args.time, settings, output: 0 })
+    let region = match args.view {
+        View::Flat => args.region.map(|bound| bound * f64::from(args.repeat)),
+        // The camera takes the place in the picture.
+        View::Plane => UNIT_SQUARE,
+    };
+    Ok(Request { size: args.size, region, time: args.time, settings, output: 0 })
 }
 
 /// A bar that appears when the render takes long, and only on a terminal.

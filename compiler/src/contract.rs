@@ -30,7 +30,7 @@ impl Reads {
 }
 
 /// What a graph reads: its entry, and all that it calls.
-pub fn reads(graph: &Graph) -> Reads {
+fn reads(graph: &Graph) -> Reads {
     reads_of_functions(graph).pop().unwrap_or_default()
 }
 

@@ -26,12 +26,14 @@ pub mod manifest;
 pub mod module;
 mod naming;
 pub mod pass;
+pub mod plane;
 pub mod profile;
 pub mod resource;
 
 pub use diagnostic::Diagnostic;
 pub use library::Library;
 pub use manifest::{Form, Manifest};
+pub use plane::Plane;
 pub use profile::Profile;
 
 use crate::check::Checker;
@@ -40,7 +42,7 @@ use crate::graph::{Graph, PassGraph};
 use crate::module::{Loader, Modules, Sources};
 
 /// What to compile, and how to wrap it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The texture; the file's first when none. A node's name means the node on its own, its inputs
     /// fed from the place; `name.wire` means a wire inside a texture or node.
@@ -55,6 +57,9 @@ pub struct Options {
     pub first_binding: u32,
     /// The host whose limits are kept; its bindings are not taken over.
     pub profile: Profile,
+    /// The texture on the ground instead of in a flat picture; the complete form then takes `uv` as
+    /// the place in the picture.
+    pub plane: Option<Plane>,
 }
 
 impl Default for Options {
@@ -66,6 +71,7 @@ impl Default for Options {
             group: 0,
             first_binding: 0,
             profile: Profile::Webgpu,
+            plane: None,
         }
     }
 }
@@ -253,6 +259,7 @@ fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Ch
     };
     if let Some(last) = graphs.last_mut() {
         choose_outputs(&mut last.graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
+        options.plane.iter().for_each(|plane| plane::seen(&mut last.graph, *plane));
     }
     Ok(Checked { graphs, label, head })
 }

@@ -1,6 +1,6 @@
 """Draws the pictures of the README and the guide that the command draws: python3 docs/images/make.py
 
-Needs target/release/texgraph and Pillow. Every picture is rendered twice as large as it is shown.
+Needs target/release/texgraph and Pillow. Every picture but the ground is rendered twice as large as it is shown.
 """
 
 import re
@@ -49,6 +49,15 @@ def guide():
                 save(render(file, 340), f"{texture[1]}.png")
 
 
+def ground():
+    """As it is rendered: how it is filtered is what it shows."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "out.png"
+        view = ["--view", "plane", "--repeat", "0.2", "--size", "680x400"]
+        subprocess.run([COMMAND, "render", "examples/tiling.tex", "-o", out, *view], cwd=ROOT, check=True)
+        save(Image.open(out).convert("RGB"), "ground.jpg")
+
+
 def wires():
     names = ["truchet.cell", "truchet.at", "truchet.turn", "truchet"]
     strip = Image.new("RGB", (4 * 240 + 3 * 8, 240), "white")
@@ -62,4 +71,5 @@ if __name__ == "__main__":
         sys.exit("build it first: cargo build --release")
     examples()
     guide()
+    ground()
     wires()

@@ -51,10 +51,7 @@ pub struct SyntaxError {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SyntaxErrorKind {
     /// The text has more than [`MAX_BYTES`] bytes.
-    FileTooLarge {
-        /// Its size.
-        bytes: usize,
-    },
+    FileTooLarge,
     /// More than [`MAX_NESTING`] levels.
     TooDeep,
     /// `/*` without its `*/`.
@@ -185,7 +182,7 @@ impl SyntaxError {
     pub fn code(&self) -> &'static str {
         use SyntaxErrorKind as Kind;
         match &self.kind {
-            Kind::FileTooLarge { .. } => "E0001",
+            Kind::FileTooLarge => "E0001",
             Kind::TooDeep => "E0002",
             Kind::UnclosedComment => "E0003",
             Kind::UnclosedText => "E0004",
@@ -215,9 +212,7 @@ impl SyntaxError {
     pub fn message(&self) -> String {
         use SyntaxErrorKind as Kind;
         match &self.kind {
-            Kind::FileTooLarge { bytes } => {
-                format!("this file has {bytes} bytes, and the most is {MAX_BYTES}")
-            }
+            Kind::FileTooLarge => format!("this file has more than {} MiB", MAX_BYTES >> 20),
             Kind::TooDeep => format!("this is nested more than {MAX_NESTING} levels deep"),
             Kind::UnclosedComment => "this comment is never closed".into(),
             Kind::UnclosedText => "this string is not closed on its line".into(),
@@ -269,7 +264,7 @@ impl SyntaxError {
     pub fn label(&self) -> String {
         use SyntaxErrorKind as Kind;
         match &self.kind {
-            Kind::FileTooLarge { .. } => "from here on".into(),
+            Kind::FileTooLarge => "from here on".into(),
             Kind::TooDeep => "one level too many".into(),
             Kind::UnclosedComment | Kind::UnclosedText => "opened here".into(),
             Kind::Unclosed { close, .. } => format!("its `{close}` is missing"),
@@ -299,7 +294,7 @@ impl SyntaxError {
     pub fn help(&self) -> Option<String> {
         use SyntaxErrorKind as Kind;
         let help: &str = match &self.kind {
-            Kind::FileTooLarge { .. } => "split the file and join the parts with `use`",
+            Kind::FileTooLarge => "split the file and join the parts with `use`",
             Kind::TooDeep => "give inner parts names with `let`",
             Kind::UnclosedComment => "block comments nest: every `/*` needs its own `*/`",
             Kind::UnclosedText => "close it with `\"`; a line break is written `\\n`",

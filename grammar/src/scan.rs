@@ -78,8 +78,7 @@ const SECOND: &[u8] = b".>=&|:+*";
 /// Scans a text of at most [`MAX_BYTES`] bytes.
 pub(crate) fn scan(source: &str) -> Result<Scan<'_>, SyntaxError> {
     if source.len() > MAX_BYTES {
-        let kind = SyntaxErrorKind::FileTooLarge { bytes: source.len() };
-        return Err(SyntaxError::new(kind, beyond_limit(source)));
+        return Err(SyntaxError::new(SyntaxErrorKind::FileTooLarge, beyond_limit(source)));
     }
     let tokens = Vec::with_capacity(source.len() / 4);
     let scan = Scan { source, tokens, comments: Vec::new(), errors: Vec::new() };

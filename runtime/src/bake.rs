@@ -93,7 +93,7 @@ fn checked_table<'a>(resource: &'a Resource, texture: &'a Texture) -> Result<&'a
         let error = Box::new(RenderError::TextureSize { size: *size });
         return Err(RenderError::Bake { name: resource.name.clone(), error });
     }
-    let layout = table::layout(*format, *size, 1, true);
+    let layout = Table::mipmapped(*format, *size, 1);
     let is_right = |table: &&Table| {
         let Table { file: _, format, width, height, layers, levels } = table;
         (format, width, height, layers, levels)

@@ -48,7 +48,7 @@ fn standard_input_goes_to_standard_output() {
     broken.fails(1, "<stdin>:1:");
     assert_eq!(broken.out, "");
     shop.run_with(&["fmt", "-"], [0x61, 0xff]).fails(1, "not UTF-8 text (byte 1");
-    shop.run_with(&["fmt", "-"], vec![b' '; (1 << 20) + 1]).fails(1, "has more than 1048576 bytes");
+    shop.run_with(&["fmt", "-"], vec![b' '; (1 << 20) + 1]).fails(1, "has more than 1 MiB");
 }
 
 #[test]

@@ -40,6 +40,20 @@ fn options_reach_the_picture() {
     assert!(changes(&shop, &["--region", "1,0,0,1"]));
     assert!(changes(&shop, &["--region", "-1,-1,0,0"]));
     assert!(changes(&shop, &["--output", "height"]));
+    assert!(changes(&shop, &["--view", "plane"]));
+    assert!(changes(&shop, &["--view=flat", "--repeat=1"]));
+    assert!(!changes(&shop, &[]));
+}
+
+#[test]
+fn a_flat_picture_repeats_as_its_region_says() {
+    let shop = Workshop::new(&[("a.tex", PLAIN)]);
+    assert!(render(&shop, &["--region", "0,0,2.5,2.5"]).is_silent());
+    let region = shop.read("a.png");
+    assert!(render(&shop, &["--repeat", "2.5"]).is_silent());
+    assert_eq!(shop.read("a.png"), region);
+    assert!(render(&shop, &["--repeat", "2.5", "--view", "plane"]).is_silent());
+    assert_ne!(shop.read("a.png"), region);
 }
 
 #[test]
@@ -87,6 +101,11 @@ fn wrong_usage() {
         (&["--region=0,0,nan,1"], "`nan` is no finite number"),
         (&["--region=0,0,inf,1"], "`inf` is no finite number"),
         (&["--region=0,0,0,1"], "the region is empty"),
+        (&["--view=globe"], "globe"),
+        (&["--view=plane", "--region=0,0,2,2"], "the plane takes --repeat"),
+        (&["--repeat=2", "--region=0,0,2,2"], "cannot be used with"),
+        (&["--repeat=0"], "above 0 and at most 65536"),
+        (&["--repeat=nan"], "`nan` is no finite number"),
         (&["--time=nan"], "`nan` is no finite number"),
         (&["--time=1e300"], "`1e300` is too large"),
         (&["--set=scal=2"], "there is no param `scal`; is `scale` meant?"),

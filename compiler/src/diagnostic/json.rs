@@ -1,13 +1,15 @@
 //! Errors as objects for editors: one a line, in the shape of rustc's `--error-format json`
 //! (<https://doc.rust-lang.org/rustc/json.html>).
 //!
-//! What differs: nothing is expanded from a macro, so `expansion` is always null; and no line at the
-//! end counts the errors.
+//! What differs: nothing is expanded from a macro, so `expansion` is always null; no line at the end
+//! counts the errors; and the text of a long line is clipped around the place, with its highlight.
 
+use super::clip::clip;
 use super::render::{Shown, page};
 use super::{Diagnostic, Place, Suggestion};
 use crate::module::Sources;
 use serde::Serialize;
+use std::ops::Range;
 
 /// One object a line.
 pub fn lines(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
@@ -49,17 +51,17 @@ struct Span<'a> {
     column_start: usize,
     column_end: usize,
     is_primary: bool,
-    text: Vec<Line<'a>>,
+    text: Vec<Line>,
     label: Option<&'a str>,
     suggested_replacement: Option<&'a str>,
     suggestion_applicability: Option<&'static str>,
     expansion: Option<()>,
 }
 
-/// A line of the source that a place touches, and the columns that it covers there.
+/// A line of the source that a place touches, and the columns of this text that it covers.
 #[derive(Serialize)]
-struct Line<'a> {
-    text: &'a str,
+struct Line {
+    text: String,
     highlight_start: usize,
     highlight_end: usize,
 }
@@ -119,13 +121,13 @@ impl<'a> Span<'a> {
         let source = files.sources.get(place)?;
         let (line_start, column_start) = files.line_and_column(place.file, place.span.start);
         let (line_end, column_end) = files.line_and_column(place.file, place.span.end);
+        let (first, start) = files.line_and_byte(place.file, place.span.start)?;
+        let (last, end) = files.line_and_byte(place.file, place.span.end)?;
         let line = |number| {
-            let text = files.line(place.file, number);
-            Line {
-                text,
-                highlight_start: if number == line_start { column_start } else { 1 },
-                highlight_end: if number == line_end { column_end } else { text.chars().count() + 1 },
-            }
+            let text = files.line(place.file, number + 1);
+            let start = if number == first { start } else { 0 };
+            let end = if number == last { end } else { text.len() };
+            Line::of(text, start..end)
         };
         Some(Span {
             file_name: &source.path,
@@ -136,11 +138,22 @@ impl<'a> Span<'a> {
             column_start,
             column_end,
             is_primary: false,
-            text: (line_start..=line_end).map(line).collect(),
+            text: (first..=last).map(line).collect(),
             label: Some(label).filter(|label| !label.is_empty()),
             suggested_replacement: None,
             suggestion_applicability: None,
             expansion: None,
         })
+    }
+}
+
+impl Line {
+    /// Of a place in a line, in bytes.
+    fn of(line: &str, place: Range<usize>) -> Line {
+        let shown = clip(line, &[place.start, place.end]);
+        let before = |byte| shown.text.get(..shown.shown(byte)).unwrap_or_default();
+        let column = |byte| before(byte).chars().count() + 1;
+        let (highlight_start, highlight_end) = (column(place.start), column(place.end));
+        Line { text: shown.text, highlight_start, highlight_end }
     }
 }

@@ -6,8 +6,10 @@
 //! `pages/`, listed by [`codes`].
 
 pub mod arguments;
+mod clip;
 pub mod codes;
 pub mod constructors;
+mod excerpt;
 pub mod folds;
 pub mod imports;
 pub mod json;

@@ -1,9 +1,10 @@
 //! The layout of error pages: the only place that knows codespan-reporting.
 
+use super::excerpt::Excerpt;
 use super::{Diagnostic, Place};
 use crate::module::Sources;
 use codespan_reporting::diagnostic::{Diagnostic as Page, Label};
-use codespan_reporting::files::{Error, Files};
+use codespan_reporting::files::Error;
 use codespan_reporting::term::{self, Chars, Config};
 
 /// Pages with source lines and underlines, as plain text.
@@ -28,37 +29,33 @@ pub(super) fn page(files: &Shown, diagnostic: &Diagnostic) -> String {
 
 fn rendered(files: &Shown, diagnostic: &Diagnostic, color: bool) -> String {
     let config = Config { chars: Chars::box_drawing(), tab_width: 4, ..Config::default() };
-    let page = laid_out(diagnostic, files.sources);
+    let places = diagnostic.related.iter().map(|(place, _)| *place);
+    let places: Vec<Place> = std::iter::once(diagnostic.place).chain(places).collect();
+    let excerpt = Excerpt::new(files, &places);
+    let page = laid_out(diagnostic, &excerpt);
     let emitted = if color {
-        emit_colored(&config, files, &page)
+        emit_colored(&config, &excerpt, &page)
     } else {
-        term::emit_into_string(&config, files, &page)
+        term::emit_into_string(&config, &excerpt, &page)
     };
     emitted.unwrap_or_else(|_| line(files, diagnostic))
 }
 
-fn emit_colored(config: &Config, files: &Shown, page: &Page<usize>) -> Result<String, Error> {
+fn emit_colored(config: &Config, excerpt: &Excerpt, page: &Page<usize>) -> Result<String, Error> {
     let mut ansi = term::termcolor::Ansi::new(Vec::new());
     let styles = term::Styles::default();
-    term::emit_to_write_style(&mut term::StylesWriter::new(&mut ansi, &styles), config, files, page)?;
+    term::emit_to_write_style(&mut term::StylesWriter::new(&mut ansi, &styles), config, excerpt, page)?;
     Ok(String::from_utf8_lossy(&ansi.into_inner()).into_owned())
 }
 
-fn laid_out(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
-    let label = |place: &Place| {
-        // A place in a file that was never read has nothing to underline.
-        sources.get(*place).map(|source| {
-            let end = source.text.len();
-            let range = place.span.range();
-            (place.file as usize, range.start.min(end)..range.end.min(end))
-        })
-    };
+fn laid_out(diagnostic: &Diagnostic, excerpt: &Excerpt) -> Page<usize> {
     let mut page = Page::error().with_code(diagnostic.code).with_message(printable(&diagnostic.message));
-    if let Some((file, range)) = label(&diagnostic.place) {
+    // A place in a file that was never read has nothing to underline.
+    if let Some((file, range)) = excerpt.range(diagnostic.place) {
         page = page.with_label(Label::primary(file, range).with_message(printable(&diagnostic.label)));
     }
     for (place, text) in &diagnostic.related {
-        if let Some((file, range)) = label(place) {
+        if let Some((file, range)) = excerpt.range(*place) {
             page = page.with_label(Label::secondary(file, range).with_message(printable(text)));
         }
     }
@@ -70,7 +67,7 @@ fn laid_out(diagnostic: &Diagnostic, sources: &Sources) -> Page<usize> {
 
 /// A text that can't command a terminal: control characters, which are one byte each like their
 /// stand-in, do not reach it.
-fn printable(text: &str) -> String {
+pub(super) fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_control() && c != '\n' && c != '\t' { '?' } else { c }).collect()
 }
 
@@ -93,22 +90,16 @@ fn line(files: &Shown, diagnostic: &Diagnostic) -> String {
 
 /// The texts with the starts of their lines.
 pub(super) struct Shown<'a> {
-    /// The texts as they are.
     pub sources: &'a Sources,
-    /// The texts as they are printed; places point into them just the same.
-    texts: Vec<String>,
     lines: Vec<Vec<usize>>,
 }
 
 impl<'a> Shown<'a> {
     pub fn new(sources: &'a Sources) -> Shown<'a> {
         let starts = |text: &str| codespan_reporting::files::line_starts(text).collect();
-        let texts: Vec<String> = sources.0.iter().map(|source| printable(&source.text)).collect();
-        Shown { sources, lines: texts.iter().map(|text| starts(text)).collect(), texts }
+        Shown { sources, lines: sources.0.iter().map(|source| starts(&source.text)).collect() }
     }
-}
 
-impl<'a> Shown<'a> {
     /// A line, from 1, without its end.
     pub fn line(&self, file: u32, number: usize) -> &'a str {
         let starts = self.lines.get(file as usize).map_or(&[][..], Vec::as_slice);
@@ -118,41 +109,25 @@ impl<'a> Shown<'a> {
         text.get(start..end).unwrap_or_default().trim_end_matches(['\n', '\r'])
     }
 
+    /// The line, from 0, in which a byte stands, and how many bytes of the line are before it. None
+    /// for a file that was never read.
+    pub fn line_and_byte(&self, file: u32, offset: u32) -> Option<(usize, usize)> {
+        let lines = self.lines.get(file as usize)?;
+        let offset = (offset as usize).min(self.sources.0.get(file as usize)?.text.len());
+        let line = lines.partition_point(|start| *start <= offset).checked_sub(1)?;
+        Some((line, offset - lines.get(line)?))
+    }
+
     /// From 1; columns in characters.
     pub fn line_and_column(&self, file: u32, offset: u32) -> (usize, usize) {
-        let (file, offset) = (file as usize, offset as usize);
-        let (Some(source), Ok(line)) = (self.sources.0.get(file), self.line_index(file, offset)) else {
-            return (1, 1);
-        };
-        let start = self.lines.get(file).and_then(|lines| lines.get(line)).copied().unwrap_or(0);
-        let before = source.text.get(start..offset).unwrap_or_default();
-        (line + 1, before.chars().count() + 1)
-    }
-}
-
-impl<'a> Files<'a> for Shown<'a> {
-    type FileId = usize;
-    type Name = &'a str;
-    type Source = &'a str;
-
-    fn name(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.sources.0.get(id).map(|source| source.path.as_str()).ok_or(Error::FileMissing)
+        let place = self.line_and_byte(file, offset);
+        place.map_or((1, 1), |(line, byte)| (line + 1, self.column(file, line, byte)))
     }
 
-    fn source(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.texts.get(id).map(String::as_str).ok_or(Error::FileMissing)
-    }
-
-    fn line_index(&'a self, id: usize, byte: usize) -> Result<usize, Error> {
-        let lines = self.lines.get(id).ok_or(Error::FileMissing)?;
-        Ok(lines.binary_search(&byte).unwrap_or_else(|next| next.saturating_sub(1)))
-    }
-
-    fn line_range(&'a self, id: usize, line: usize) -> Result<std::ops::Range<usize>, Error> {
-        let lines = self.lines.get(id).ok_or(Error::FileMissing)?;
-        let max = lines.len().saturating_sub(1);
-        let start = *lines.get(line).ok_or(Error::LineTooLarge { given: line, max })?;
-        let end = lines.get(line + 1).copied().unwrap_or(self.source(id)?.len());
-        Ok(start..end)
+    /// The column, from 1, of a byte of a line, from 0.
+    pub fn column(&self, file: u32, line: usize, byte: usize) -> usize {
+        let start = self.lines.get(file as usize).and_then(|lines| lines.get(line)).copied().unwrap_or(0);
+        let text = self.sources.0.get(file as usize).map_or("", |source| &source.text);
+        text.get(start..start + byte).unwrap_or_default().chars().count() + 1
     }
 }

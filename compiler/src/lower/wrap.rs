@@ -38,7 +38,9 @@ impl Lowering<'_> {
     fn globals(&mut self) -> Globals {
         let block = self.uniform_block();
         let mut views = FxHashMap::default();
-        for id in crate::contract::reads(self.graph).views {
+        // The entry, which is last, reads what all the others read.
+        let read = self.reads.last().map(|reads| reads.views.clone());
+        for id in read.unwrap_or_default() {
             let view = &self.graph.views[id.0 as usize];
             let resource = &self.manifest.resources[view.resource as usize];
             let Some(texture) = resource.textures.iter().find(|t| t.field == view.field) else { continue };

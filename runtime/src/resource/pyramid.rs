@@ -6,7 +6,7 @@
 //! the one above in f32, before that one is rounded to its texel format.
 
 use super::encoding::Writer;
-use super::table::{self, Made};
+use super::table::Made;
 use glam::Vec4;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
@@ -21,8 +21,8 @@ pub fn build(
     layers: u32,
     texel: impl Fn(u32, u32, u32) -> Vec4 + Sync,
 ) -> Made {
-    let table = table::layout(format, size, layers, true);
-    let mut bytes = vec![0; table::bytes(&table) as usize];
+    let table = Table::mipmapped(format, size, layers);
+    let mut bytes = vec![0; table.bytes() as usize];
     let writer = Writer::new(format);
     by_layer(&table, &mut bytes).into_par_iter().enumerate().for_each(|(layer, levels)| {
         write_layer(&writer, size, levels, |x, y| texel(layer as u32, x, y));

@@ -1,7 +1,7 @@
-//! The layout of a table's bytes, and the limits that every texture keeps.
+//! What is made of a resource's files, and the limits that every texture keeps.
 
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
-use texgraph_compiler::manifest::{Format, Level, Table};
+use texgraph_compiler::manifest::{Format, Table};
 
 /// WebGPU's least guarantee for a side of a 2D texture.
 pub const MAX_SIDE: u32 = 8192;
@@ -30,35 +30,9 @@ impl Made {
         size: [u32; 2],
         values: impl Iterator<Item = i32>,
     ) -> Made {
-        let table = layout(format, size, 1, false);
+        let table = Table::with_levels(format, size, 1, 1);
         Made { field, table, bytes: values.flat_map(i32::to_le_bytes).collect() }
     }
-}
-
-/// Lays out all levels, or one, of a texture: a level's layers follow one another, rows have no
-/// padding.
-pub fn layout(format: Format, size: [u32; 2], layers: u32, mipmapped: bool) -> Table {
-    let [width, height] = size;
-    let count = if mipmapped { width.max(height).max(1).ilog2() + 1 } else { 1 };
-    let mut offset = 0;
-    let levels = (0..count).map(|level| {
-        let [width, height] = size.map(|side| (side >> level).max(1));
-        let bytes_per_row = width * format.bytes();
-        let level = Level { offset, width, height, layers, bytes_per_row };
-        offset += level_bytes(&level);
-        level
-    });
-    Table { file: None, format, width, height, layers, levels: levels.collect() }
-}
-
-/// The bytes of a level, all layers.
-pub fn level_bytes(level: &Level) -> u64 {
-    u64::from(level.bytes_per_row) * u64::from(level.height) * u64::from(level.layers)
-}
-
-/// The bytes of all levels.
-pub fn bytes(table: &Table) -> u64 {
-    table.levels.iter().map(level_bytes).sum()
 }
 
 /// Checks a mipmapped texture against what every GPU can hold, before it is made.
@@ -78,7 +52,7 @@ pub fn check(
     if size.iter().any(|side| *side > MAX_SIDE) {
         return Err(vec![resources::texture_too_large(place, path, size, MAX_SIDE)]);
     }
-    let bytes = bytes(&layout(format, size, layers, true));
+    let bytes = Table::mipmapped(format, size, layers).bytes();
     if bytes > MAX_BYTES {
         return Err(vec![resources::too_many_bytes(place, bytes, MAX_BYTES)]);
     }

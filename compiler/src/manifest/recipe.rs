@@ -1,0 +1,93 @@
+//! What the bytes of a resource are made of.
+
+use super::{Format, Texture};
+use serde::{Deserialize, Serialize};
+
+/// A resource: what a constructor call in the source asks for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Resource {
+    /// The name of its `let` (or a made-up one for a constructor inside an expression).
+    pub name: String,
+    /// Its documentation.
+    pub label: String,
+    /// The constructor with all its arguments: what the bytes are made of.
+    pub recipe: Recipe,
+    /// The textures the shader reads it through. Those that no shader of this program reads are
+    /// left out.
+    pub textures: Vec<Texture>,
+}
+
+/// How to make the bytes of a resource: a constructor with every argument, defaults filled in.
+/// Paths are relative to the folder of the program's main file, with `/`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Recipe {
+    /// One picture, mipmapped. Field `pixels`.
+    Image {
+        /// The picture file.
+        path: String,
+        /// How its numbers are read.
+        encoding: Encoding,
+    },
+    /// Interchangeable tiles, one layer each. Field `layers`.
+    Patterns {
+        /// Picture files: one with `grid` cells, or one per pattern.
+        paths: Vec<String>,
+        /// Columns and rows of the one picture; `[1, 1]` for a list of files. Row by row.
+        grid: [u32; 2],
+        /// How the numbers are read.
+        encoding: Encoding,
+    },
+    /// Four independent permutations of 0..size: entry i holds σ₀(i)…σ₃(i). A row of the program's
+    /// [`Recipe::Tables`].
+    Permutation {
+        /// T, 2 to 4096.
+        size: u32,
+        /// Chooses the permutations.
+        seed: i32,
+    },
+    /// An integer map. Field `map`.
+    Indices {
+        /// Where the integers come from.
+        source: IndicesSource,
+        /// M: a picture's grey range is cut into M equal steps, numbered from 0 (black); numbers
+        /// given as a list must be below it.
+        levels: u32,
+    },
+    /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
+    /// the r-th of these resources; the width is that of the longest.
+    Tables {
+        /// Indices of resources: permutations.
+        rows: Vec<u32>,
+    },
+    /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
+    /// compiling.
+    Bake {
+        /// Texels across and down.
+        size: [u32; 2],
+        /// Its texels' format.
+        format: Format,
+    },
+}
+
+/// Where an integer map comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum IndicesSource {
+    /// A grey picture.
+    Path(String),
+    /// Rows of numbers, all of one length.
+    Rows(Vec<Vec<i32>>),
+}
+
+/// How the numbers of a picture are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Encoding {
+    /// Colour: linearised, premultiplied, filtered in that space.
+    Srgb,
+    /// Data, as it is, straight alpha.
+    Linear,
+    /// A normal map: xyz in −1..1.
+    Normal,
+}
