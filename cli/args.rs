@@ -195,6 +195,9 @@ pub struct Build {
     /// How the shader is wrapped
     #[arg(long, value_enum, default_value_t, value_name = "FORM")]
     pub form: Form,
+    /// Where the derivatives come from that samples are filtered with
+    #[arg(long, value_enum, default_value_t, value_name = "FROM")]
+    pub gradients: Gradients,
     /// The format of the manifest
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub manifest: ManifestFormat,
@@ -219,6 +222,18 @@ pub enum Form {
     Library,
     /// A function that takes textures, samplers and params as arguments, and binds nothing
     Functions,
+}
+
+/// Where screen derivatives come from.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum Gradients {
+    /// The shader takes them itself: in the fragment stage, in uniform control flow
+    #[default]
+    Derive,
+    /// Whoever calls the shader passes them: for compute, ray tracing, branches
+    Argument,
+    /// Nowhere: every sample is of the finest level
+    None,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]

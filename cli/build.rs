@@ -3,7 +3,7 @@
 //! Everything is made in memory first. Files are written only when nothing is wrong with any
 //! texture, so the folder never holds a mixture of an old and a new build.
 
-use crate::args::{Build, Form, ManifestFormat};
+use crate::args::{Build, Form, Gradients, ManifestFormat};
 use crate::output;
 use crate::problem::{Problem, Report};
 use crate::program::{self, Program};
@@ -60,6 +60,11 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
             Form::Complete => manifest::Form::Complete,
             Form::Library => manifest::Form::Library,
             Form::Functions => manifest::Form::Functions,
+        },
+        gradients: match args.gradients {
+            Gradients::Derive => manifest::Gradients::Derive,
+            Gradients::Argument => manifest::Gradients::Argument,
+            Gradients::None => manifest::Gradients::None,
         },
         group: args.group.unwrap_or(group),
         first_binding: args.first_binding.unwrap_or(first_binding),

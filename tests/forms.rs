@@ -1,4 +1,5 @@
-//! The three forms of one texture give the same picture, pixel for pixel.
+//! The three forms of one texture give the same picture, pixel for pixel, whether they take screen
+//! derivatives or are given them.
 //!
 //! A small host is written around the library form and the functions form, from the manifest alone:
 //! bindings, an entry point and the call. Without an adapter the tests are shown as ignored, unless
@@ -9,9 +10,10 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texgraph_compiler::manifest::{
-    Argument, Input, Manifest, Param, SampleKind, Scalar, Source, Texture, Type, Uniform, ViewDimension,
+    Argument, Axis, Gradient, Input, Manifest, Param, SampleKind, Scalar, Source, Texture, Type, Uniform,
+    ViewDimension,
 };
-use texgraph_compiler::{Form, Library, Options, Program, compile, diagnostic::render};
+use texgraph_compiler::{Form, Gradients, Library, Options, Program, compile, diagnostic::render};
 use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::picture::Picture;
 use texgraph_runtime::project::Project;
@@ -47,28 +49,34 @@ fn files() -> Vec<PathBuf> {
 }
 
 fn forms_agree(gpu: &Gpu, file: &Path) -> Result<(), Failed> {
-    let complete = pictures(gpu, file, Form::Complete)?;
+    let complete = pictures(gpu, file, Form::Complete, Gradients::Derive)?;
     if complete.iter().all(|picture| picture.pixels.iter().all(|pixel| *pixel == picture.pixels[0])) {
         return Err("every picture has one colour: they prove nothing".into());
     }
     for form in [Form::Library, Form::Functions] {
-        let pictures = pictures(gpu, file, form)?;
-        if let Some(output) = (0..complete.len()).find(|i| pictures[*i] != complete[*i]) {
-            let difference = complete[output].difference(&pictures[output], 0.0);
-            return Err(format!("{form:?}, output {output}: {difference:?}").into());
+        for gradients in [Gradients::Derive, Gradients::Argument] {
+            let pictures = pictures(gpu, file, form, gradients)?;
+            if let Some(output) = (0..complete.len()).find(|i| pictures[*i] != complete[*i]) {
+                let difference = complete[output].difference(&pictures[output], 0.0);
+                return Err(format!("{form:?}, {gradients:?}, output {output}: {difference:?}").into());
+            }
         }
     }
     Ok(())
 }
 
 /// The pictures of all outputs.
-fn pictures(gpu: &Gpu, file: &Path, form: Form) -> Result<Vec<Picture>, Failed> {
+fn pictures(gpu: &Gpu, file: &Path, form: Form, gradients: Gradients) -> Result<Vec<Picture>, Failed> {
     let library = Library::standard()?;
     let project = Project::new(file, true);
-    let options = Options { form, ..Options::default() };
+    let options = Options { form, gradients, ..Options::default() };
     let compiled = compile(&library, project.main(), &project, &options);
     let compiled = compiled.map_err(|f| render::human(&f.sources, &f.diagnostics))?;
     let mut program = compiled.program;
+    let text = &program.texture().wgsl;
+    if gradients == Gradients::Argument && (text.contains("dpdx") || text.contains("dpdy")) {
+        return Err(format!("it takes derivatives:\n{text}").into());
+    }
     match form {
         Form::Complete => {}
         Form::Library => host_of_library(&mut program),
@@ -92,11 +100,15 @@ fn host_of_library(program: &mut Program) {
     let manifest = &mut program.manifest;
     let name = manifest.passes.last().expect("a pass").entry_point.clone();
     let inputs: Vec<String> = manifest.inputs.iter().map(input).collect();
+    let gradients: Vec<String> = manifest.gradients.iter().map(gradient).collect();
     let (_, head) = pass.wgsl.split_once(&format!("fn {name}(")).expect("the function");
-    let inputs = match head.strip_prefix("in: ").and_then(|head| head.split_once(')')) {
-        Some((structure, _)) => format!("{structure}({})", inputs.join(", ")),
-        None => String::new(),
-    };
+    let (head, _) = head.split_once(')').expect("its arguments");
+    let arguments = head.split_terminator(", ").map(|argument| match argument.split_once(": ") {
+        Some(("in", structure)) => format!("{structure}({})", inputs.join(", ")),
+        Some(("gradients", structure)) => format!("{structure}({})", gradients.join(", ")),
+        _ => panic!("an argument of another name: {argument}"),
+    });
+    let inputs = arguments.collect::<Vec<_>>().join(", ");
     let outputs: Vec<String> = manifest.outputs.iter().map(|output| output.name.clone()).collect();
     let entry = entry_point(manifest, &format!("{name}({inputs})"), Some(&outputs));
     pass.wgsl.push_str(&entry);
@@ -166,6 +178,9 @@ fn argument(manifest: &Manifest, argument: &Argument) -> String {
             let zero = if param.ty.scalar == Scalar::Bool { " != 0u" } else { "" };
             format!("host_params.{}{zero}", member(param))
         }
+        Argument::Gradient(name) => {
+            gradient(manifest.gradients.iter().find(|one| one.name == *name).expect("the derivative"))
+        }
         Argument::Texture(resource, field) => texture(manifest, *resource, field).name.clone(),
         Argument::Sampler(resource, field) => {
             texture(manifest, *resource, field).sampler.as_ref().expect("a sampler").name.clone()
@@ -181,6 +196,15 @@ fn input(input: &Input) -> String {
         ("base", width) => format!("vec{width}<i32>()"),
         (name, _) => format!("in_{name}_"),
     }
+}
+
+/// A derivative as the host has it.
+fn gradient(gradient: &Gradient) -> String {
+    let axis = match gradient.axis {
+        Axis::X => "x",
+        Axis::Y => "y",
+    };
+    format!("dpd{axis}(in_{}_)", gradient.input)
 }
 
 /// A fragment entry point that makes a call and widens each output; tells the manifest of it.

@@ -6,7 +6,7 @@ use crate::Options;
 use crate::graph::{self, Constant, Graph, Operation, ParamId, PassGraph, Scalar, ViewDimension, ViewId};
 use crate::input::is_per_draw;
 use crate::manifest::{
-    self, Argument, Call, Form, Gradients, Input, Manifest, Output, Param, Pass, Recipe, Resource,
+    self, Argument, Call, Form, Gradient, Gradients, Input, Manifest, Output, Param, Pass, Recipe, Resource,
     SampleKind, Sampler, Source, Table, Texture, Type, Uniform, Value,
 };
 use crate::naming::{self, Scope};
@@ -71,6 +71,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
     let mut block = Block::default();
     let params = params(graph, &bound_params(&each, options.form), &mut block);
     let inputs = inputs(entry, options.form, &mut block);
+    let gradients = gradients(entry, &inputs, options);
     let mut next = options.first_binding;
     // Global names are public: they are chosen here, apart from each other, and lowering keeps away.
     let mut scope = Scope::default();
@@ -90,26 +91,31 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
     let resources = resources(graph, &all, &name, &mut scope, (options.group, next));
     let mut files = Scope::default();
     files.take(&entry.name);
-    let passes = graphs.iter().zip(&each).map(|(PassGraph { graph: pass, bake }, reads)| {
-        let function = pass.function(pass.entry());
-        let shader = match bake {
-            Some(_) => files.name(&format!("{}_{}", entry.name, function.name)).to_string(),
-            None => entry.name.to_string(),
-        };
-        Pass {
-            name: function.name.to_string(),
-            bake: *bake,
-            reads: views(graph, reads),
-            params: reads.params.iter().map(|id| graph.params[id.0 as usize].name.clone()).collect(),
-            shader: format!("{shader}.wgsl"),
-            entry_point: match bake {
-                Some(_) => format!("{}_fragment", naming::identifier(&shader)),
-                None => entry_point.to_string(),
-            },
-            call: (bake.is_none() && options.form == Form::Functions).then(|| call(graph, function, reads)),
-            gradients: gradients(function),
-        }
-    });
+    let passes: Vec<Pass> = graphs
+        .iter()
+        .zip(&each)
+        .map(|(PassGraph { graph: pass, bake }, reads)| {
+            let function = pass.function(pass.entry());
+            let shader = match bake {
+                Some(_) => files.name(&format!("{}_{}", entry.name, function.name)).to_string(),
+                None => entry.name.to_string(),
+            };
+            Pass {
+                name: function.name.to_string(),
+                bake: *bake,
+                reads: views(graph, reads),
+                params: reads.params.iter().map(|id| graph.params[id.0 as usize].name.clone()).collect(),
+                shader: format!("{shader}.wgsl"),
+                entry_point: match bake {
+                    Some(_) => format!("{}_fragment", naming::identifier(&shader)),
+                    None => entry_point.to_string(),
+                },
+                call: (bake.is_none() && options.form == Form::Functions)
+                    .then(|| call(graph, function, &gradients, reads)),
+                gradients: taken(function, bake.is_some(), options),
+            }
+        })
+        .collect();
     Manifest {
         version: manifest::VERSION,
         generator: format!("texgraph {}", env!("CARGO_PKG_VERSION")),
@@ -117,10 +123,11 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
         label: label.to_owned(),
         form: options.form,
         inputs,
+        gradients,
         outputs: outputs(entry),
         params,
         uniform,
-        passes: passes.collect(),
+        passes,
         resources,
     }
 }
@@ -139,6 +146,7 @@ pub fn of_pass(manifest: &Manifest, index: usize) -> Cow<'_, Manifest> {
     own.form = Form::Complete;
     own.inputs = vec![Input { name: "uv".to_owned(), ty: float(2), source: Source::Varying(0) }];
     let texel = Output { name: "texel".to_owned(), ty: float(4), location: 0, is_color: false };
+    own.gradients = Vec::new();
     own.outputs = vec![texel];
     Cow::Owned(own)
 }
@@ -152,9 +160,10 @@ fn bound_params(each: &[Reads], form: Form) -> BTreeSet<ParamId> {
 }
 
 /// How the function of a texture is called; lowering makes the same arguments.
-fn call(graph: &Graph, entry: &graph::Function, reads: &Reads) -> Call {
+fn call(graph: &Graph, entry: &graph::Function, gradients: &[Gradient], reads: &Reads) -> Call {
     let mut arguments: Vec<Argument> =
         entry.inputs.iter().map(|slot| Argument::Input(slot.name.to_string())).collect();
+    arguments.extend(gradients.iter().map(|gradient| Argument::Gradient(gradient.name.clone())));
     let params = reads.params.iter().map(|id| &graph.params[id.0 as usize]);
     arguments.extend(params.map(|param| Argument::Param(param.name.clone())));
     for view in reads.views.iter().map(|id| &graph.views[id.0 as usize]) {
@@ -174,9 +183,49 @@ fn views(graph: &Graph, reads: &Reads) -> Vec<(u32, String)> {
     views.map(|view| (view.resource, view.field.to_owned())).collect()
 }
 
-fn gradients(entry: &graph::Function) -> Gradients {
-    let derivative = |operation: &Operation| matches!(operation, Operation::Derivative(..));
-    if entry.values.iter().any(derivative) { Gradients::Derive } else { Gradients::None }
+/// Where a pass has its derivatives from.
+fn taken(entry: &graph::Function, is_bake: bool, options: &Options) -> Gradients {
+    match derivatives(entry).next() {
+        None => Gradients::None,
+        Some(_) if is_bake => Gradients::Derive,
+        Some(_) => options.gradients,
+    }
+}
+
+/// The derivatives that an entry reads: input and axis.
+fn derivatives(entry: &graph::Function) -> impl Iterator<Item = (usize, graph::Axis)> {
+    entry.values.iter().filter_map(|operation| {
+        let Operation::Derivative(of, axis) = operation else { return None };
+        let Operation::Input(input) = entry.operation(*of) else { return None };
+        Some((*input as usize, *axis))
+    })
+}
+
+/// The derivatives that a texture is given.
+fn gradients(entry: &graph::Function, inputs: &[Input], options: &Options) -> Vec<Gradient> {
+    if options.gradients != Gradients::Argument {
+        return Vec::new();
+    }
+    let varying = |input: &&Input| matches!(input.source, Source::Varying(_));
+    let mut location = inputs.iter().filter(varying).count() as u32;
+    let mut read: Vec<(usize, graph::Axis)> = derivatives(entry).collect();
+    read.sort_unstable();
+    let gradient = |(input, axis): (usize, graph::Axis)| {
+        let Input { name: input, ty, source } = inputs.get(input)?;
+        let source = match source {
+            Source::Varying(_) => {
+                location += 1;
+                Source::Varying(location - 1)
+            }
+            other => *other,
+        };
+        let (axis, suffix) = match axis {
+            graph::Axis::X => (manifest::Axis::X, "dx"),
+            graph::Axis::Y => (manifest::Axis::Y, "dy"),
+        };
+        Some(Gradient { name: format!("{input}_{suffix}"), input: input.clone(), axis, ty: *ty, source })
+    };
+    read.into_iter().filter_map(gradient).collect()
 }
 
 /// The uniform block as it grows.

@@ -32,7 +32,7 @@ pub mod resource;
 
 pub use diagnostic::Diagnostic;
 pub use library::Library;
-pub use manifest::{Form, Manifest};
+pub use manifest::{Form, Gradients, Manifest};
 pub use plane::Plane;
 pub use profile::Profile;
 
@@ -51,6 +51,8 @@ pub struct Options {
     pub outputs: Option<Vec<String>>,
     /// How the shader is wrapped.
     pub form: Form,
+    /// Where screen derivatives come from. Bakes take their own.
+    pub gradients: Gradients,
     /// `@group` of everything that is bound.
     pub group: u32,
     /// The first `@binding`; the others follow.
@@ -68,6 +70,7 @@ impl Default for Options {
             texture: None,
             outputs: None,
             form: Form::Complete,
+            gradients: Gradients::Derive,
             group: 0,
             first_binding: 0,
             profile: Profile::Webgpu,
@@ -219,9 +222,10 @@ fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Pl
     let checked = checked(library, modules, options);
     let Checked { graphs, label, head } = checked.map_err(|found| advice::advise(modules, found))?;
     let finished = &library.ahead().finished;
-    let optimised = graphs
-        .into_iter()
-        .map(|PassGraph { graph, bake }| PassGraph { graph: pass::run(graph, finished), bake });
+    let optimised = graphs.into_iter().map(|PassGraph { graph, bake }| {
+        let gradients = if bake.is_some() { Gradients::Derive } else { options.gradients };
+        PassGraph { graph: pass::run(graph, finished, gradients), bake }
+    });
     let graphs: Vec<PassGraph> = optimised.collect();
     let manifest = contract::manifest(&graphs, &label, options);
     let passed = graphs.last().map(|last| profile::check(options.profile, &manifest, &last.graph, head));

@@ -8,6 +8,7 @@ use texgraph_compiler::graph::{
 use texgraph_compiler::intrinsic::{
     ADD, ADD_INT, COS, DIVIDE, EXP, LESS, LESS_INT, MULTIPLY, MULTIPLY_INT, SIN, SUBTRACT, TO_FLOAT,
 };
+use texgraph_compiler::manifest::Gradients;
 use texgraph_compiler::pass::{Finished, differentiate, hoist, inline, remove_dead, run};
 
 const FLOAT: Type = Type::FLOAT;
@@ -138,7 +139,7 @@ fn with_derivatives(b: &mut Builder, values: Vec<Value>) -> Vec<Value> {
 
 /// Checks that the derivatives behind the first outputs are what the outputs' differences say.
 fn derivatives_are_differences(before: Graph, (u, v): (f32, f32)) {
-    let after = differentiate::run(before, &Finished::default());
+    let after = differentiate::run(before, &Finished::default(), true);
     let screen = [[0.7, -0.2], [0.3, 1.1]];
     let numbers = |u: f32, v: f32| -> Vec<Constant> {
         let mut inputs = at(u, v);
@@ -215,7 +216,7 @@ fn only_accumulators_that_need_a_tangent_carry_one() {
         outputs.push(all[1]);
         outputs
     });
-    let after = differentiate::run(graph(vec![wave(), entry]), &Finished::default());
+    let after = differentiate::run(graph(vec![wave(), entry]), &Finished::default(), true);
     let fold = folds(after.function(after.entry()))[0];
     assert_eq!((fold.starts.len(), fold.captures.len()), (3 + 2, 1 + 2));
     let body = after.function(fold.body);
@@ -275,7 +276,7 @@ fn a_condition_takes_what_its_fold_carries() {
         with_derivatives(b, all[..2].to_vec())
     });
     let before = graph(vec![wave(), condition, entry]);
-    let after = differentiate::run(before.clone(), &Finished::default());
+    let after = differentiate::run(before.clone(), &Finished::default(), true);
     let fold = folds(after.function(after.entry()))[0];
     let condition = after.function(fold.condition.expect("it stays"));
     assert_eq!(condition.inputs.len(), fold.starts.len() + fold.captures.len());
@@ -305,7 +306,7 @@ fn samples_in_bodies_and_conditions_have_gradients() {
         let fold = Fold { condition: Some(FunctionId(1)), ..fold(0, &[v[0], zero], steps, &[by]) };
         vec![b.fold(fold)[1]]
     });
-    let after = differentiate::run(graph(vec![body, condition, entry]), &Finished::default());
+    let after = differentiate::run(graph(vec![body, condition, entry]), &Finished::default(), true);
     for name in ["body", "condition"] {
         let function = named(&after, name);
         let gradient = |operation: &Operation| match operation {
@@ -415,7 +416,7 @@ fn calls_that_ask_for_everything_share_a_variant() {
         with_derivatives(b, vec![value])
     }));
     let before = graph(functions);
-    let after = differentiate::run(before.clone(), &Finished::default());
+    let after = differentiate::run(before.clone(), &Finished::default(), true);
     assert!(after.functions.len() <= 10 * 17 + 1, "{} functions", after.functions.len());
     derivatives_are_differences(before, (0.9, 0.8));
 }
@@ -1011,8 +1012,11 @@ fn all_passes_keep_every_value() {
     let mut inputs = at(0.31, 0.62);
     inputs.push(("uv_dx", Constant::floats(&[0.7, -0.2])));
     inputs.push(("uv_dy", Constant::floats(&[0.3, 1.1])));
-    let plain = differentiate::run(before.clone(), &Finished::default());
-    assert_eq!(outputs(&run(before, &Finished::default()), &inputs), outputs(&plain, &inputs));
+    let plain = differentiate::run(before.clone(), &Finished::default(), true);
+    assert_eq!(
+        outputs(&run(before, &Finished::default(), Gradients::Derive), &inputs),
+        outputs(&plain, &inputs)
+    );
 }
 
 #[test]
@@ -1032,7 +1036,7 @@ fn ten_thousand_functions_and_folds_deep() {
         let value = b.call(FunctionId(10_000), &last, vec![x, v[1]])[0];
         with_derivatives(b, vec![value])
     }));
-    let after = run(graph(functions), &Finished::default());
+    let after = run(graph(functions), &Finished::default(), Gradients::Derive);
     assert_eq!(after.functions.len(), 10_002);
     assert!(!has(&after.functions[0], EXP));
 }

@@ -3,7 +3,7 @@
 use crate::workshop::{PLAIN, WRONG, Workshop, examples};
 use std::fs;
 use texgraph_compiler::Manifest;
-use texgraph_compiler::manifest::{Argument, Form};
+use texgraph_compiler::manifest::{Argument, Form, Gradients};
 
 const TWO: &str = "let order = permutation(16)\n\ntexture first(uv: vec2) -> (height: float) {\n    height = float(order.at(ifloor(uv.x * 16.0)).x)\n}\n\ntexture second(uv: vec2) -> (color: color) {\n    color = vec4(uv, 0.0, 1.0)\n}\n";
 
@@ -77,6 +77,22 @@ fn functions_bind_nothing_and_say_how_they_are_called() {
     let wgsl = shop.text("first.wgsl");
     let head = format!("fn {}(uv: vec2<f32>, ", pass.entry_point);
     assert!(!wgsl.contains('@') && wgsl.contains(&head), "{wgsl}");
+}
+
+#[test]
+fn derivatives_are_taken_passed_or_done_without() {
+    let slope = "texture slope(uv: vec2) -> (x: float) {\n    x = dx(uv.x * uv.y)\n}\n";
+    let shop = Workshop::new(&[("slope.tex", slope)]);
+    let built = |gradients: &str| {
+        assert!(shop.run(&["build", "slope.tex", "--form=library", "--gradients", gradients]).is_silent());
+        let manifest = Manifest::from_ron(&shop.text("slope.ron")).expect("a manifest");
+        let given: Vec<String> = manifest.gradients.iter().map(|one| one.name.clone()).collect();
+        let wgsl = shop.text("slope.wgsl");
+        (manifest.passes[0].gradients, given, wgsl.contains("dpdx"), wgsl.contains("gradients.uv_dx"))
+    };
+    assert_eq!(built("derive"), (Gradients::Derive, vec![], true, false));
+    assert_eq!(built("argument"), (Gradients::Argument, vec!["uv_dx".into()], false, true));
+    assert_eq!(built("none"), (Gradients::None, vec![], false, false));
 }
 
 #[test]

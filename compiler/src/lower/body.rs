@@ -1,6 +1,6 @@
 //! A naga function in the making.
 
-use crate::graph::{ParamId, ViewId};
+use crate::graph::{Axis, ParamId, ViewId};
 use crate::naming::{Names, Scope};
 use naga::{BinaryOperator, Block, Expression, Handle, Literal, Scalar, Span, Statement};
 use rustc_hash::FxHashMap;
@@ -19,6 +19,8 @@ pub struct Body<'f> {
     pub views: FxHashMap<ViewId, Handle<Expression>>,
     /// The sampler that goes with a texture.
     pub samplers: FxHashMap<Handle<Expression>, Handle<Expression>>,
+    /// Derivatives of inputs that are given.
+    pub gradients: FxHashMap<(Handle<Expression>, Axis), Handle<Expression>>,
     /// Numbers that are there already.
     literals: FxHashMap<(Scalar, u32), Handle<Expression>>,
     /// Numbers of calls' results with their names.
@@ -52,6 +54,7 @@ impl<'f> Body<'f> {
             params: FxHashMap::default(),
             views: FxHashMap::default(),
             samplers: FxHashMap::default(),
+            gradients: FxHashMap::default(),
             literals: FxHashMap::default(),
             results: FxHashMap::default(),
         }

@@ -6,13 +6,13 @@ use super::types::Types;
 use super::{Callee, Lowering, Member};
 use crate::contract::Reads;
 use crate::graph::regions::{Region, Regions, draw_rate};
-use crate::graph::{Function, FunctionId, Type};
-use crate::manifest::Form;
+use crate::graph::{Axis, Function, FunctionId, Type};
+use crate::manifest::{self, Form, Gradient, Manifest};
 use crate::naming::{Scope, camel_case};
 use naga::{Expression, Handle, Span};
 use smol_str::{SmolStr, format_smolstr};
 
-impl Lowering<'_> {
+impl<'a> Lowering<'a> {
     /// Lowers function `index` of the graph; its callees are lowered already. `public` is the name
     /// of what hosts call.
     pub(super) fn function(&mut self, index: usize, public: &str) {
@@ -25,7 +25,7 @@ impl Lowering<'_> {
             _ => self.module_name(if is_entry { "texture" } else { &source.name }),
         };
         let mut scope = Scope::inside(&self.prefix);
-        let arguments = self.arguments(source, &reads, &mut scope);
+        let arguments = self.arguments(source, &reads, is_entry, &mut scope);
         let result = self.result_type(source, &name);
         let mut function = naga::Function {
             name: Some(self.names.placeholder(name)),
@@ -36,7 +36,7 @@ impl Lowering<'_> {
         let mut body = Body::new(&mut function, scope);
         let first = if is_entry { draw_rate(source, &self.weights) } else { Vec::new() };
         let mut frame = Frame::new(source, Regions::inside(source, &self.weights, 0, &first));
-        let inputs = self.bind_arguments(&mut body, source, &reads);
+        let inputs = self.bind_arguments(&mut body, source, &reads, is_entry);
         frame.bind(&inputs);
         self.numbers(&mut body, &mut frame);
         self.first(&mut body, &mut frame, &first);
@@ -73,9 +73,14 @@ impl Lowering<'_> {
         &mut self,
         source: &Function,
         reads: &Reads,
+        is_entry: bool,
         scope: &mut Scope,
     ) -> Vec<naga::FunctionArgument> {
         let mut slots: Vec<(SmolStr, Type)> = source.inputs.iter().map(|s| (s.name.clone(), s.ty)).collect();
+        slots.extend(
+            self.gradients(is_entry)
+                .map(|(input, gradient)| (gradient.name.as_str().into(), source.inputs[input].ty)),
+        );
         for id in &reads.params {
             let param = &self.graph.params[id.0 as usize];
             slots.push((param.name.as_str().into(), param.ty));
@@ -102,8 +107,23 @@ impl Lowering<'_> {
         arguments
     }
 
+    /// The derivatives that the texture is given, each with the place of its input.
+    pub(super) fn gradients(&self, is_entry: bool) -> impl Iterator<Item = (usize, &'a Gradient)> + use<'a> {
+        let manifest: &'a Manifest = self.manifest;
+        let gradients = manifest.gradients.iter().filter(move |_| is_entry);
+        gradients.filter_map(|gradient| {
+            Some((manifest.inputs.iter().position(|input| input.name == gradient.input)?, gradient))
+        })
+    }
+
     /// Tells a body where its arguments are; the inputs among them, in order.
-    fn bind_arguments(&mut self, body: &mut Body, source: &Function, reads: &Reads) -> Vec<Argument> {
+    fn bind_arguments(
+        &mut self,
+        body: &mut Body,
+        source: &Function,
+        reads: &Reads,
+        is_entry: bool,
+    ) -> Vec<Argument> {
         let mut next = 0;
         let mut argument = |body: &mut Body, ty: Type| {
             let handle = body.add(Expression::FunctionArgument(next));
@@ -116,7 +136,16 @@ impl Lowering<'_> {
             handle
         };
         let inputs = source.inputs.iter();
-        let inputs = inputs.map(|slot| Argument { handle: argument(body, slot.ty), known: None }).collect();
+        let inputs: Vec<Argument> =
+            inputs.map(|slot| Argument { handle: argument(body, slot.ty), known: None }).collect();
+        for (input, gradient) in self.gradients(is_entry) {
+            let handle = argument(body, source.inputs[input].ty);
+            let axis = match gradient.axis {
+                manifest::Axis::X => Axis::X,
+                manifest::Axis::Y => Axis::Y,
+            };
+            body.gradients.insert((inputs[input].handle, axis), handle);
+        }
         for id in &reads.params {
             let handle = argument(body, self.graph.params[id.0 as usize].ty);
             body.params.insert(*id, handle);

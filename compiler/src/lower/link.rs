@@ -116,6 +116,7 @@ fn no_manifest() -> Manifest {
         label: String::new(),
         form: manifest::Form::Functions,
         inputs: Vec::new(),
+        gradients: Vec::new(),
         outputs: Vec::new(),
         params: Vec::new(),
         uniform: None,

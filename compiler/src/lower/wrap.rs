@@ -126,7 +126,7 @@ impl Lowering<'_> {
         body.binary(naga::BinaryOperator::NotEqual, loaded, zero)
     }
 
-    /// Calls the plain function: inputs as given, the rest from globals.
+    /// Calls the plain function: inputs and their derivatives as given, the rest from globals.
     fn call_plain(
         &mut self,
         body: &mut Body,
@@ -166,6 +166,15 @@ impl Lowering<'_> {
             let binding = Some(at_location(location, slot.ty.is_float()));
             function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding });
         }
+        let mut given = Vec::new();
+        for (input, gradient) in self.gradients(true) {
+            let Source::Varying(location) = gradient.source else { continue };
+            let ty = self.types.get(&mut self.module.types, entry.inputs[input].ty);
+            given.push(function.arguments.len() as u32);
+            let placeholder = self.names.placeholder(scope.name(&gradient.name));
+            let binding = Some(at_location(location, true));
+            function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding });
+        }
         let floats = Types::of(&mut self.module.types, numeric(naga::Scalar::F32, 4));
         let several = entry.outputs.len() > 1;
         let result = if several {
@@ -182,7 +191,7 @@ impl Lowering<'_> {
         let binding = (!several).then(|| at_location(0, true));
         function.result = Some(naga::FunctionResult { ty: result, binding });
         let mut body = Body::new(&mut function, scope);
-        let inputs: Vec<Handle<Expression>> = entry
+        let mut inputs: Vec<Handle<Expression>> = entry
             .inputs
             .iter()
             .zip(varying)
@@ -191,6 +200,7 @@ impl Lowering<'_> {
                 None => self.member(&mut body, globals, &slot.name),
             })
             .collect();
+        inputs.extend(given.into_iter().map(|argument| body.add(Expression::FunctionArgument(argument))));
         let value = self.call_plain(&mut body, globals, inputs);
         let outputs: Vec<Handle<Expression>> = entry
             .outputs
@@ -223,39 +233,40 @@ impl Lowering<'_> {
         });
     }
 
-    /// `fn NAME(in: NAMEInputs) -> NAMEOutputs`
+    /// `fn NAME(in: NAMEInputs) -> NAMEOutputs`, or `fn NAME(in: NAMEInputs, gradients:
+    /// NAMEGradients) -> NAMEOutputs`.
     fn library(&mut self, name: &str, globals: &Globals) {
         let entry = self.graph.function(self.graph.entry());
         let mut scope = Scope::inside(&self.prefix);
-        let inputs = entry.inputs.iter().map(|slot| {
-            let ty = self.types.get(&mut self.module.types, slot.ty);
-            Member { name: slot.name.clone(), ty, binding: None }
-        });
-        let inputs: Vec<Member> = inputs.collect();
-        let outputs = entry.outputs.iter().map(|(slot, _)| {
-            let ty = self.types.get(&mut self.module.types, slot.ty);
-            Member { name: slot.name.clone(), ty, binding: None }
-        });
-        let outputs: Vec<Member> = outputs.collect();
+        let inputs: Vec<(SmolStr, Type)> =
+            entry.inputs.iter().map(|slot| (slot.name.clone(), slot.ty)).collect();
+        let outputs = self.members(entry.outputs.iter().map(|(slot, _)| (slot.name.clone(), slot.ty)));
+        let gradients = self.gradients(true);
+        let gradients: Vec<(SmolStr, Type)> = gradients
+            .map(|(input, gradient)| (gradient.name.as_str().into(), entry.inputs[input].ty))
+            .collect();
         let mut function = naga::Function { name: Some(self.names.placeholder(name)), ..Default::default() };
-        let takes_inputs = !inputs.is_empty();
-        if takes_inputs {
-            let ty = self.structure(&camel_case(&format!("{}_inputs", self.prefix)), inputs);
-            let placeholder = self.names.placeholder(scope.name("in"));
+        let mut groups = Vec::new();
+        for (argument, kind, slots) in [("in", "inputs", inputs), ("gradients", "gradients", gradients)] {
+            if slots.is_empty() {
+                continue;
+            }
+            groups.push(slots.len() as u32);
+            let members = self.members(slots.into_iter());
+            let ty = self.structure(&camel_case(&format!("{}_{kind}", self.prefix)), members);
+            let placeholder = self.names.placeholder(scope.name(argument));
             function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding: None });
         }
         let ty = self.structure(&camel_case(&format!("{}_outputs", self.prefix)), outputs);
         function.result = Some(naga::FunctionResult { ty, binding: None });
         let mut body = Body::new(&mut function, scope);
-        let base = takes_inputs.then(|| body.add(Expression::FunctionArgument(0)));
-        let members: Vec<Handle<Expression>> = base
-            .iter()
-            .flat_map(|base| (0..entry.inputs.len() as u32).map(|index| (*base, index)))
-            .collect::<Vec<_>>()
-            .into_iter()
-            .map(|(base, index)| body.add(Expression::AccessIndex { base, index }))
-            .collect();
-        let value = self.call_plain(&mut body, globals, members);
+        let bases: Vec<Handle<Expression>> =
+            (0..groups.len() as u32).map(|i| body.add(Expression::FunctionArgument(i))).collect();
+        let mut given = Vec::new();
+        for (base, count) in bases.into_iter().zip(groups) {
+            given.extend((0..count).map(|index| body.add(Expression::AccessIndex { base, index })));
+        }
+        let value = self.call_plain(&mut body, globals, given);
         let components = if entry.outputs.len() > 1 {
             (0..entry.outputs.len() as u32)
                 .map(|index| body.add(Expression::AccessIndex { base: value, index }))
@@ -266,6 +277,15 @@ impl Lowering<'_> {
         let value = body.add(Expression::Compose { ty, components });
         self.results.push(body.finish(value));
         self.module.functions.append(function, Span::UNDEFINED);
+    }
+
+    /// Members of a struct from names and types.
+    fn members(&mut self, slots: impl Iterator<Item = (SmolStr, Type)>) -> Vec<Member> {
+        let member = |(name, ty)| {
+            let ty = self.types.get(&mut self.module.types, ty);
+            Member { name, ty, binding: None }
+        };
+        slots.map(member).collect()
     }
 }
 

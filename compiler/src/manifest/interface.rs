@@ -46,6 +46,33 @@ pub struct Input {
     pub source: Source,
 }
 
+/// A derivative of an input that the shader is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Gradient {
+    /// The input's name with `_dx` or `_dy`: how much the input grows from a pixel to the next one to
+    /// the right, or to the next one down.
+    pub name: String,
+    /// The input.
+    pub input: String,
+    /// Along which axis of the screen.
+    pub axis: Axis,
+    /// Its type, that of the input.
+    pub ty: Type,
+    /// Where it comes from. In the library form it is a member of the function's second argument, a
+    /// struct `NAMEGradients`.
+    pub source: Source,
+}
+
+/// An axis of the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// To the right.
+    X,
+    /// Down.
+    Y,
+}
+
 /// Where a value comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

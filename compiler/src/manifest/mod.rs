@@ -12,7 +12,7 @@ mod recipe;
 mod table;
 mod texture;
 
-pub use interface::{Input, Output, Param, Scalar, Source, Type, Uniform, Value};
+pub use interface::{Axis, Gradient, Input, Output, Param, Scalar, Source, Type, Uniform, Value};
 pub use pass::{Argument, Call, Form, Gradients, Pass};
 pub use recipe::{Encoding, IndicesSource, Recipe, Resource};
 pub use table::{Format, Level, Table};
@@ -38,6 +38,10 @@ pub struct Manifest {
     pub form: Form,
     /// What the shader takes per pixel or per draw.
     pub inputs: Vec<Input>,
+    /// The derivatives of inputs that the shader is given, if it was compiled to be: all that it
+    /// reads, in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradients: Vec<Gradient>,
     /// What it gives.
     pub outputs: Vec<Output>,
     /// What a host may set at run time.

@@ -40,7 +40,7 @@ pub struct Pass {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub call: Option<Call>,
     /// `derive`: the shader takes screen derivatives, so it runs in a fragment stage and in uniform
-    /// control flow only.
+    /// control flow only; `argument`: it is given them.
     pub gradients: Gradients,
 }
 
@@ -64,6 +64,8 @@ pub enum Argument {
     Param(String),
     /// A texture, by its resource (index) and field.
     Texture(u32, String),
+    /// The derivative of that name, one of the manifest's `gradients`.
+    Gradient(String),
     /// The sampler of the texture before it, by the same.
     Sampler(u32, String),
 }
@@ -74,6 +76,9 @@ pub enum Argument {
 pub enum Gradients {
     /// `dpdx` and `dpdy` of the inputs, taken once at the top.
     Derive,
-    /// The shader needs none.
+    /// From whoever calls the shader, which then runs in any stage, wherever control flow is: see
+    /// [`Manifest::gradients`](super::Manifest::gradients).
+    Argument,
+    /// The shader needs none, or does without: every sample is of the finest level.
     None,
 }

@@ -12,14 +12,15 @@ pub mod remove_dead;
 pub use finished::Finished;
 
 use crate::graph::Graph;
+use crate::manifest::Gradients;
 
 /// Everything between checking and lowering, each pass once. `fold_constants` is no step: it is
 /// applied wherever a value is made. What is `finished` already is taken over.
-pub fn run(graph: Graph, finished: &Finished) -> Graph {
+pub fn run(graph: Graph, finished: &Finished, gradients: Gradients) -> Graph {
     // First, so that all others see whole expressions, and no loop where there need not be one.
     let graph = inline::run(graph);
     // Before hoisting, so that a guard may go where its operands are the same for a whole draw.
-    let graph = differentiate::run(graph, finished);
+    let graph = differentiate::run(graph, finished, gradients != Gradients::None);
     let graph = hoist::run(graph);
     // Last: all of them leave things behind that nobody reads.
     finished::settled(remove_dead::run(graph))

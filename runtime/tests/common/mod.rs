@@ -55,6 +55,7 @@ pub fn manifest() -> Manifest {
         label: String::new(),
         form: Form::Complete,
         inputs: Vec::new(),
+        gradients: Vec::new(),
         outputs: Vec::new(),
         params: Vec::new(),
         uniform: None,

@@ -1,7 +1,7 @@
 //! Backward, callers first: which values need a tangent, and which variants that takes.
 
 use super::{Analysis, Inputs, Layout, Variant, depend, marked};
-use crate::graph::{Fold, Function, FunctionId, Graph, Level, Operation, Origin, Type, Value};
+use crate::graph::{Fold, Function, FunctionId, Graph, Level, Operation, Origin, Slot, Value};
 use crate::input::is_per_draw;
 use crate::pass::finished::Done;
 use rustc_hash::FxHashMap;
@@ -54,7 +54,7 @@ impl<'a> Requests<'a> {
             works: functions.iter().map(|_| Vec::new()).collect(),
         };
         let Some(entry) = functions.last() else { return requests };
-        requests.variants[functions.len() - 1].push(of_entry(entry));
+        requests.variants[functions.len() - 1].push(of_entry(entry, analysis.changes));
         for i in (0..functions.len()).rev() {
             let variants = std::mem::take(&mut requests.variants[i]);
             for variant in &variants {
@@ -128,14 +128,11 @@ impl<'a> Requests<'a> {
 }
 
 /// Of the entry those inputs change that are not the same for a whole draw.
-fn of_entry(entry: &Function) -> Variant {
-    let changing = entry.inputs.iter().enumerate().filter(|(_, slot)| changes(slot.ty, &slot.name));
+fn of_entry(entry: &Function, changes: bool) -> Variant {
+    let is_changing = |slot: &Slot| changes && slot.ty.is_float() && !is_per_draw(&slot.name);
+    let changing = entry.inputs.iter().enumerate().filter(|(_, slot)| is_changing(slot));
     let changing = changing.fold(0, |all, (i, _)| all | Layout::CALLED.bit(i));
     Variant { changing, wanted: smallvec![false; entry.outputs.len()] }
-}
-
-fn changes(ty: Type, name: &str) -> bool {
-    ty.is_float() && !is_per_draw(name)
 }
 
 /// The variant of a condition that goes with one of its fold's body.

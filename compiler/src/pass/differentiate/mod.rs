@@ -107,13 +107,15 @@ struct Analysis<'a> {
     layouts: Vec<Layout>,
     known: Vec<Known>,
     finished: &'a Finished,
+    /// The inputs of the entry change across the screen.
+    changes: bool,
 }
 
 impl<'a> Analysis<'a> {
     fn of(graph: &'a Graph, finished: &'a Finished) -> Analysis<'a> {
         let layouts = Layout::all(graph);
         let known = depend::analyse(graph, &layouts);
-        Analysis { graph, layouts, known, finished }
+        Analysis { graph, layouts, known, finished, changes: true }
     }
 
     /// A variant of a function that has been through all passes already.
@@ -132,9 +134,10 @@ impl<'a> Analysis<'a> {
 }
 
 /// Replaces every `Level::Auto` by gradients, every inner derivative by its value, and every total
-/// operation by what a shader has. What is `finished` already is taken over.
-pub fn run(graph: Graph, finished: &Finished) -> Graph {
-    let analysis = Analysis::of(&graph, finished);
+/// operation by what a shader has. What is `finished` already is taken over. If nothing `changes`
+/// across the screen, every derivative is 0 and every sample of the finest level.
+pub fn run(graph: Graph, finished: &Finished, changes: bool) -> Graph {
+    let analysis = Analysis { changes, ..Analysis::of(&graph, finished) };
     let (functions, _) = make_all(&analysis, &Requests::of(&analysis));
     Graph { functions, ..graph }
 }
