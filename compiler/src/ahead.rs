@@ -7,7 +7,7 @@
 
 use crate::graph::{Builder, Function, FunctionId, Graph, Origin};
 use crate::lower::Objects;
-use crate::pass::{Finished, inline};
+use crate::pass::{Finished, inline, merge_samples};
 
 /// Functions made ahead.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +26,8 @@ impl Ahead {
         let nodes: Vec<FunctionId> = nodes.collect();
         let mut graph = Graph { functions, ..Graph::default() };
         graph.functions.push(caller(&graph.functions, &nodes));
-        let mut checked = inline::ahead(&graph);
+        let functions = inline::ahead(&graph);
+        let Graph { functions: mut checked, .. } = merge_samples::run(Graph { functions, ..graph.clone() });
         for (i, function) in checked.iter_mut().enumerate() {
             function.origin = Some(Origin::Checked(i as u32));
         }

@@ -174,6 +174,11 @@ impl Regions {
         &self.blocks[region.0 as usize].values
     }
 
+    /// All branches, those inside others before them.
+    pub fn branches(&self) -> &[Branch] {
+        &self.branches
+    }
+
     /// The branch that makes a choice; none for one that selects.
     pub fn branch(&self, choice: Value) -> Option<&Branch> {
         self.branches.get(*self.branch_of.get(&choice)?)

@@ -1,7 +1,7 @@
 //! Functions of the library that have been through all passes before any program calls them.
 
 use super::differentiate::{self, MadeOf, Variant};
-use super::{hoist, remove_dead};
+use super::{hoist, remove_dead, share_level};
 use crate::graph::{Function, FunctionId, Graph, Origin};
 use rustc_hash::FxHashMap;
 
@@ -32,7 +32,7 @@ impl Finished {
     pub fn of(graph: Graph) -> (Graph, Finished) {
         let (graph, variants) = differentiate::with_variants(graph);
         let shapes: Vec<Shape> = graph.functions.iter().map(Shape::of).collect();
-        let graph = hoist::run(graph);
+        let graph = hoist::run(share_level::run(graph));
         let (graph, places) = remove_dead::with_places(graph);
         let mut finished = Finished::default();
         for function in &graph.functions {

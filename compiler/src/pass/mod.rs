@@ -7,7 +7,9 @@ pub mod fold_constants;
 pub mod hoist;
 pub mod inline;
 mod liveness;
+pub mod merge_samples;
 pub mod remove_dead;
+pub mod share_level;
 
 pub use finished::Finished;
 
@@ -19,8 +21,12 @@ use crate::manifest::Gradients;
 pub fn run(graph: Graph, finished: &Finished, gradients: Gradients) -> Graph {
     // First, so that all others see whole expressions, and no loop where there need not be one.
     let graph = inline::run(graph);
+    // Before differentiation: what is merged has one gradient.
+    let graph = merge_samples::run(graph);
     // Before hoisting, so that a guard may go where its operands are the same for a whole draw.
     let graph = differentiate::run(graph, finished, gradients != Gradients::None);
+    // Before hoisting, which takes levels out of loops.
+    let graph = share_level::run(graph);
     let graph = hoist::run(graph);
     // Last: all of them leave things behind that nobody reads.
     finished::settled(remove_dead::run(graph))

@@ -18,6 +18,8 @@
 mod rate;
 mod split;
 
+pub use rate::fixed;
+
 use super::liveness::{Liveness, Role};
 use crate::graph::regions::Weights;
 use crate::graph::{Builder, Constant, Fold, Function, FunctionId, Graph, Operation, Slot, Value};
