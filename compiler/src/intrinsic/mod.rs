@@ -18,6 +18,7 @@ mod value;
 pub use derivative::{Tangents, zero};
 pub use lanes::{LANES, Lanes, Vector, ZERO};
 pub use table::*;
+pub use value::floor;
 
 use crate::graph::{Builder, Constant, Scalar, Value};
 

@@ -3,77 +3,196 @@
 //!
 //! GPUs round the weights to some eight bits and may take the level of detail from a whole quad of
 //! pixels; here all is computed in f32 at the pixel. Samplers have no anisotropy (yet).
+//!
+//! A batch is sampled level by level: which texels a level gives and how they are weighed is worked
+//! out for all lanes side by side, then the texels are gathered for the lanes that want the level.
 
-use super::texture::{Level, Texture};
-use glam::{IVec2, Vec2, Vec4};
+use super::machine::{Mask, gather, lanes_of};
+use super::texture::{Level, Texels, Texture};
+use glam::Vec4;
+use texgraph_compiler::intrinsic::{LANES, Lanes, ZERO, floor};
 use texgraph_compiler::manifest::{Filter, Wrap};
 
 impl Texture {
-    /// The level of detail of a coordinate whose screen derivatives are `dx` and `dy`: log2 of the
+    /// The level of detail of a coordinate whose screen derivatives are (dx, dy): log2 of the
     /// longer one in texels. Not clamped; −∞ for a constant coordinate.
-    pub fn level(&self, dx: Vec2, dy: Vec2) -> f32 {
+    pub fn level(&self, [dx, dy]: [[&Lanes; 2]; 2], mask: Mask, to: &mut Lanes) {
         let size = self.size().as_vec2();
-        let longer = (dx * size).length_squared().max((dy * size).length_squared());
-        0.5 * libm::log2f(longer)
-    }
-
-    /// A filtered sample; the level and the layer are clamped to what there is.
-    pub fn sample(&self, at: Vec2, lod: f32, layer: i32) -> Vec4 {
-        let last = self.levels.len() - 1;
-        // `max` turns what is no number into 0.
-        let lod = lod.max(0.0).min(last as f32);
-        let layer = layer.clamp(0, self.levels[0].layers - 1);
-        match self.filter {
-            Filter::Nearest => {
-                self.nearest(&self.levels[((lod + 0.5).ceil() as usize).max(1) - 1], at, layer)
-            }
-            Filter::Linear => {
-                let (upper, share) = (lod.floor() as usize, lod.fract());
-                let sharp = self.bilinear(&self.levels[upper], at, layer);
-                if share == 0.0 {
-                    return sharp;
-                }
-                sharp.lerp(self.bilinear(&self.levels[upper + 1], at, layer), share)
-            }
-        }
-    }
-
-    fn nearest(&self, level: &Level, at: Vec2, layer: i32) -> Vec4 {
-        let place = self.place(at) * level.size.as_vec2();
-        self.texel(level, self.inside(place.floor().as_ivec2(), level.size), layer)
-    }
-
-    fn bilinear(&self, level: &Level, at: Vec2, layer: i32) -> Vec4 {
-        let place = self.place(at) * level.size.as_vec2() - 0.5;
-        let first = place.floor();
-        let share = place - first;
-        let low = self.inside(first.as_ivec2(), level.size);
-        let high = self.inside(first.as_ivec2() + 1, level.size);
-        let texel = |x: i32, y: i32| self.texel(level, IVec2::new(x, y), layer);
-        let upper = texel(low.x, low.y).lerp(texel(high.x, low.y), share.x);
-        let lower = texel(low.x, high.y).lerp(texel(high.x, high.y), share.x);
-        upper.lerp(lower, share.y)
-    }
-
-    /// The coordinate in the first period: exact before it is scaled to texels, and finite.
-    fn place(&self, at: Vec2) -> Vec2 {
-        let reduced = match self.wrap {
-            Wrap::Repeat => at - at.floor(),
-            Wrap::Mirror => at - 2.0 * (at * 0.5).floor(),
-            Wrap::Clamp => at.clamp(Vec2::splat(-1.0), Vec2::splat(2.0)),
+        let squared = |[x, y]: [&Lanes; 2], i: usize| {
+            let (x, y) = (f32::from_bits(x[i]) * size.x, f32::from_bits(y[i]) * size.y);
+            x * x + y * y
         };
-        Vec2::select(reduced.is_finite_mask(), reduced, Vec2::ZERO)
+        let longer: [f32; LANES] = std::array::from_fn(|i| squared(dx, i).max(squared(dy, i)));
+        // Neighbours often have the same gradient, and logarithms are dear.
+        let (mut last, mut level) = (f32::NAN, 0);
+        for i in lanes_of(mask) {
+            if longer[i] != last {
+                last = longer[i];
+                level = (0.5 * libm::log2f(last)).to_bits();
+            }
+            to[i] = level;
+        }
     }
 
-    /// A texel's place inside the level.
-    fn inside(&self, at: IVec2, size: IVec2) -> IVec2 {
-        match self.wrap {
-            Wrap::Repeat => at.rem_euclid(size),
-            Wrap::Clamp => at.clamp(IVec2::ZERO, size - 1),
-            Wrap::Mirror => {
-                let folded = at.rem_euclid(2 * size);
-                folded.min(2 * size - 1 - folded)
+    /// Filtered samples; level and layer are clamped to what there is.
+    pub fn sample(
+        &self,
+        at: [&Lanes; 2],
+        level: &Lanes,
+        layer: &Lanes,
+        mask: Mask,
+        to: &mut [Lanes; 4],
+    ) {
+        let last = self.levels.len() - 1;
+        let Texels::Float(texels) = &self.texels else {
+            *to = [ZERO; 4];
+            return;
+        };
+        let [x, y] = at.map(|lanes| self.places(lanes));
+        // `max` turns what is no number into 0.
+        let level = level.map(|bits| f32::from_bits(bits).max(0.0).min(last as f32));
+        let fetch = Fetch { texture: self, texels, x, y, layer };
+        let texels = match self.filter {
+            Filter::Nearest => fetch.nearest(&level, mask),
+            Filter::Linear => fetch.linear(&level, mask),
+        };
+        for (i, texel) in texels.iter().enumerate() {
+            for (to, component) in to.iter_mut().zip(texel.to_array()) {
+                to[i] = component.to_bits();
             }
         }
     }
+
+    /// Coordinates in the first period: exact before they are scaled to texels, and finite.
+    fn places(&self, lanes: &Lanes) -> Places {
+        match self.wrap {
+            Wrap::Repeat => places(lanes, |x| x - floor(x)),
+            Wrap::Mirror => places(lanes, |x| x - 2.0 * floor(x * 0.5)),
+            Wrap::Clamp => places(lanes, |x| x.clamp(-1.0, 2.0)),
+        }
+    }
+}
+
+/// A coordinate of all lanes, or something like it.
+type Places = [f32; LANES];
+
+fn places(lanes: &Lanes, reduce: impl Fn(f32) -> f32) -> Places {
+    lanes.map(|bits| {
+        let reduced = reduce(f32::from_bits(bits));
+        if reduced.is_finite() { reduced } else { 0.0 }
+    })
+}
+
+/// What is sampled: where, of which layer.
+struct Fetch<'a> {
+    texture: &'a Texture,
+    texels: &'a [Vec4],
+    x: Places,
+    y: Places,
+    layer: &'a Lanes,
+}
+
+impl Fetch<'_> {
+    /// Two levels weighed linearly; one where the level of detail is whole.
+    fn linear(&self, level: &Places, mask: Mask) -> [Vec4; LANES] {
+        let mut result = [Vec4::ZERO; LANES];
+        let upper = level.map(|level| level as usize);
+        let share: Places = std::array::from_fn(|i| level[i] - upper[i] as f32);
+        let mut left = mask;
+        while let Some(first) = lanes_of(left).next() {
+            let sharp = upper[first];
+            let same = left & gather(|i| upper[i] == sharp);
+            left &= !same;
+            self.bilinear(sharp, same, |i, texel| result[i] = texel);
+            let blurred = same & gather(|i| share[i] != 0.0);
+            if blurred != 0 {
+                self.bilinear(sharp + 1, blurred, |i, texel| result[i] = result[i].lerp(texel, share[i]));
+            }
+        }
+        result
+    }
+
+    /// Four texels of a level weighed linearly.
+    fn bilinear(&self, level: usize, mask: Mask, mut visit: impl FnMut(usize, Vec4)) {
+        let Some(level) = self.texture.levels.get(level) else { return };
+        let across = self.axis(&self.x, level.size.x);
+        let down = self.axis(&self.y, level.size.y);
+        let rows = |row: &[i32; LANES]| row.map(|row| row * level.size.x);
+        let (low_rows, high_rows) = (rows(&down.low), rows(&down.high));
+        for i in lanes_of(mask) {
+            let texels = self.layer(level, i);
+            let texel = |x: i32, row: i32| texels.get((row + x) as usize).copied().unwrap_or(Vec4::ZERO);
+            let (low, high, share) = (across.low[i], across.high[i], across.share[i]);
+            let upper = texel(low, low_rows[i]).lerp(texel(high, low_rows[i]), share);
+            let lower = texel(low, high_rows[i]).lerp(texel(high, high_rows[i]), share);
+            visit(i, upper.lerp(lower, down.share[i]));
+        }
+    }
+
+    /// The nearest texel of the nearest level.
+    fn nearest(&self, level: &Places, mask: Mask) -> [Vec4; LANES] {
+        let mut result = [Vec4::ZERO; LANES];
+        for i in lanes_of(mask) {
+            let level = ((level[i] + 0.5).ceil() as usize).max(1) - 1;
+            let Some(level) = self.texture.levels.get(level) else { continue };
+            let place = |place: f32, size: i32| self.inside(floor(place * size as f32) as i32, size);
+            let (x, y) = (place(self.x[i], level.size.x), place(self.y[i], level.size.y));
+            let at = (y * level.size.x + x) as usize;
+            result[i] = self.layer(level, i).get(at).copied().unwrap_or(Vec4::ZERO);
+        }
+        result
+    }
+
+    /// The texels of a lane's layer.
+    fn layer(&self, level: &Level, lane: usize) -> &[Vec4] {
+        let layer = (self.layer[lane] as i32).clamp(0, level.layers - 1);
+        self.texels.get(level.index(layer)..).unwrap_or(&[])
+    }
+
+    /// The two texels next to each place along one axis.
+    fn axis(&self, places: &Places, size: i32) -> Axis {
+        match self.texture.wrap {
+            Wrap::Repeat => axis(places, size, |at| wrapped(at, size)),
+            Wrap::Clamp => axis(places, size, |at| at.clamp(0, size - 1)),
+            Wrap::Mirror => axis(places, size, |at| mirrored(at, size)),
+        }
+    }
+
+    /// A texel's place inside a level.
+    fn inside(&self, at: i32, size: i32) -> i32 {
+        match self.texture.wrap {
+            Wrap::Repeat => wrapped(at, size),
+            Wrap::Clamp => at.clamp(0, size - 1),
+            Wrap::Mirror => mirrored(at, size),
+        }
+    }
+}
+
+/// Two texels next to each other along an axis, and the share of the second.
+struct Axis {
+    low: [i32; LANES],
+    high: [i32; LANES],
+    share: Places,
+}
+
+fn axis(places: &Places, size: i32, inside: impl Fn(i32) -> i32) -> Axis {
+    let places = places.map(|place| place * size as f32 - 0.5);
+    let first = places.map(floor);
+    Axis {
+        low: first.map(|first| inside(first as i32)),
+        high: first.map(|first| inside(first as i32 + 1)),
+        share: std::array::from_fn(|i| places[i] - first[i]),
+    }
+}
+
+/// A texel's place in a picture that repeats; it is less than a period outside.
+fn wrapped(at: i32, size: i32) -> i32 {
+    let up = if at < 0 { at + size } else { at };
+    if up >= size { up - size } else { up }
+}
+
+/// A texel's place in a picture whose neighbours are mirrored.
+fn mirrored(at: i32, size: i32) -> i32 {
+    let folded = wrapped(at, 2 * size);
+    folded.min(2 * size - 1 - folded)
 }
