@@ -166,8 +166,7 @@ fn draw(
     let plan = Plan::new(pass, graph, request, textures)?;
     let Some(output) = &plan.output else { return Ok(()) };
     let code = Code { functions: &plan.functions, known: &plan.known, textures };
-    let width = request.size[0] as usize;
-    let count = picture.pixels.len();
+    let [width, height] = request.size.map(|side| side as usize);
     let done = AtomicUsize::new(0);
     let batches = picture.pixels.par_chunks_mut(LANES).enumerate().with_min_len(LEAST_BATCHES);
     batches.for_each_init(Machine::default, |machine, (n, pixels)| {
@@ -182,9 +181,8 @@ fn draw(
         machine.work(code);
         output.write(output.components.map(|register| machine.lanes(code, register)), pixels);
         let before = done.fetch_add(pixels.len(), Ordering::Relaxed);
-        let after = before + pixels.len();
-        if before / width != after / width {
-            progress(after as f32 / count as f32);
+        for row in before / width..(before + pixels.len()) / width {
+            progress((row + 1) as f32 / height as f32);
         }
     });
     Ok(())

@@ -354,7 +354,21 @@ impl<'a> Planner<'a> {
     fn value(&mut self, function: &'a Function, value: Value) -> Result<(), RenderError> {
         let operation = function.operation(value);
         let cost = self.cost(operation);
-        self.planned.cost = self.planned.cost.saturating_add(cost);
+        let before = self.planned.steps.len();
+        self.operation(function, value, operation, cost)?;
+        if self.planned.steps.len() > before {
+            self.planned.cost = self.planned.cost.saturating_add(cost);
+        }
+        Ok(())
+    }
+
+    fn operation(
+        &mut self,
+        function: &'a Function,
+        value: Value,
+        operation: &'a Operation,
+        cost: u64,
+    ) -> Result<(), RenderError> {
         let width = usize::from(function.ty(value).width());
         let components = match operation {
             // The frame begins with them.
