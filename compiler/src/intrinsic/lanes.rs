@@ -23,8 +23,8 @@ pub static ZERO: Lanes = [0; LANES];
 
 /// One component of a function's argument or value.
 pub trait Word: Copy {
-    /// Its type in the graph.
-    const SCALAR: Scalar;
+    /// Its type in the graph; none for that of the first argument.
+    const SCALAR: Option<Scalar>;
     /// From what a constant holds.
     fn of(bits: u32) -> Self;
     /// What a constant holds.
@@ -32,7 +32,7 @@ pub trait Word: Copy {
 }
 
 impl Word for f32 {
-    const SCALAR: Scalar = Scalar::Float;
+    const SCALAR: Option<Scalar> = Some(Scalar::Float);
 
     #[inline(always)]
     fn of(bits: u32) -> f32 {
@@ -46,7 +46,7 @@ impl Word for f32 {
 }
 
 impl Word for i32 {
-    const SCALAR: Scalar = Scalar::Int;
+    const SCALAR: Option<Scalar> = Some(Scalar::Int);
 
     #[inline(always)]
     fn of(bits: u32) -> i32 {
@@ -60,7 +60,7 @@ impl Word for i32 {
 }
 
 impl Word for bool {
-    const SCALAR: Scalar = Scalar::Bool;
+    const SCALAR: Option<Scalar> = Some(Scalar::Bool);
 
     #[inline(always)]
     fn of(bits: u32) -> bool {
@@ -70,6 +70,24 @@ impl Word for bool {
     #[inline(always)]
     fn bits(self) -> u32 {
         u32::from(self)
+    }
+}
+
+/// Bits of any type, which are passed on as they are.
+#[derive(Clone, Copy)]
+pub struct Bits(u32);
+
+impl Word for Bits {
+    const SCALAR: Option<Scalar> = None;
+
+    #[inline(always)]
+    fn of(bits: u32) -> Bits {
+        Bits(bits)
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0
     }
 }
 
@@ -105,15 +123,15 @@ impl<T: Word, const N: usize> Argument for [T; N] {
 
 /// A whole value: a word, or an array of them.
 pub trait Outcome: Copy {
-    /// As one value.
-    fn constant(self) -> Constant;
+    /// As one value; `first` is the first argument.
+    fn constant(self, first: &Constant) -> Constant;
     /// Into a lane.
     fn store(self, lanes: &mut [Lanes; 4], i: usize);
 }
 
 impl<T: Word> Outcome for T {
-    fn constant(self) -> Constant {
-        Constant::new(T::SCALAR, [self.bits()])
+    fn constant(self, first: &Constant) -> Constant {
+        Constant::new(T::SCALAR.unwrap_or(first.scalar()), [self.bits()])
     }
 
     #[inline(always)]
@@ -123,8 +141,8 @@ impl<T: Word> Outcome for T {
 }
 
 impl<T: Word, const N: usize> Outcome for [T; N] {
-    fn constant(self) -> Constant {
-        Constant::new(T::SCALAR, self.map(T::bits))
+    fn constant(self, first: &Constant) -> Constant {
+        Constant::new(T::SCALAR.unwrap_or(first.scalar()), self.map(T::bits))
     }
 
     #[inline(always)]
@@ -188,7 +206,7 @@ pub fn all3<A: Word, B: Word, C: Word, R: Word>(
 /// A function of a whole argument, of one value.
 #[inline(always)]
 pub fn whole_one1<A: Argument, R: Outcome>([a, _]: [Constant; 2], f: impl Fn(A) -> R) -> Constant {
-    f(A::of(&a)).constant()
+    f(A::of(&a)).constant(&a)
 }
 
 /// A function of two whole arguments, of one value.
@@ -197,7 +215,7 @@ pub fn whole_one2<A: Argument, B: Argument, R: Outcome>(
     [a, b]: [Constant; 2],
     f: impl Fn(A, B) -> R,
 ) -> Constant {
-    f(A::of(&a), B::of(&b)).constant()
+    f(A::of(&a), B::of(&b)).constant(&a)
 }
 
 /// A function of a whole argument, in all lanes.

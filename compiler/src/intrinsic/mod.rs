@@ -48,8 +48,9 @@ pub struct Row {
 pub enum Evaluate {
     /// By a function of up to three components, which applies to each on its own.
     Each {
-        /// What a component of the value is; there are as many as the first argument has.
-        scalar: Scalar,
+        /// What a component of the value is; there are as many as the first argument has. None for
+        /// that of the first argument.
+        scalar: Option<Scalar>,
         /// Of a component of each argument.
         one: fn([u32; 3]) -> u32,
         /// The same in all lanes.
@@ -65,10 +66,11 @@ pub enum Evaluate {
 }
 
 impl Evaluate {
-    /// What a component of the value is; as many as the first argument has. None for `Whole`.
+    /// What a component of the value is; as many as the first argument has. None where only an
+    /// evaluation tells.
     pub fn component(&self) -> Option<Scalar> {
         match self {
-            Evaluate::Each { scalar, .. } => Some(*scalar),
+            Evaluate::Each { scalar, .. } => *scalar,
             Evaluate::Whole { .. } => None,
         }
     }

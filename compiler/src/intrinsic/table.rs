@@ -5,7 +5,7 @@
 
 use super::Derivative::{Rule, Zero};
 use super::Form::{All, Choose, Convert, Expand, Function, Operator};
-use super::lanes::{each, whole};
+use super::lanes::{Bits, each, whole};
 use super::{Form, Helper, Intrinsic, Row, derivative, expand, find, value};
 
 /// Every row.
@@ -558,7 +558,7 @@ pub static TABLE: &[Row] = &[
         name: "([i])",
         signature: "<n>(v: vec<n>, i: int) -> float",
         doc: "A component, the index clamped.",
-        value: whole!(([f32; N], i32) -> f32, value::component),
+        value: whole!(([Bits; N], i32) -> Bits, value::component),
         derivative: Rule(derivative::component),
         form: Expand(expand::component),
     },

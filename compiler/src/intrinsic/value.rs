@@ -13,6 +13,7 @@ pub fn evaluate(value: &Evaluate, arguments: &[Constant]) -> Constant {
         Evaluate::Each { scalar, one, all: _ } => {
             let arguments = [0, 1, 2].map(argument);
             let words = |i: usize| arguments.map(|argument| argument.int(i) as u32);
+            let scalar = scalar.unwrap_or(arguments[0].scalar());
             Constant::new(scalar, (0..width).map(|i| one(words(i))))
         }
         Evaluate::Whole { one, all: _ } => one(width, [0, 1].map(argument)),
@@ -175,8 +176,8 @@ pub fn choose<T>(condition: bool, yes: T, no: T) -> T {
     if condition { yes } else { no }
 }
 
-/// One component of a vector, the index clamped.
-pub fn component<const N: usize>(v: [f32; N], index: i32) -> f32 {
+/// One component of a vector of any type, the index clamped.
+pub fn component<T: Copy, const N: usize>(v: [T; N], index: i32) -> T {
     v[(index.max(0) as usize).min(N - 1)]
 }
 
