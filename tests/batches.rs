@@ -110,8 +110,7 @@ fn input(input: &Input, request: &Request, pixel: usize) -> Constant {
 
 /// What a pixel should be; none where that needs a texture, or too long.
 fn alone(graph: &Graph, manifest: &Manifest, request: &Request, pixel: usize) -> Option<[f32; 4]> {
-    let arguments: Vec<Constant> =
-        manifest.inputs.iter().map(|slot| input(slot, request, pixel)).collect();
+    let arguments: Vec<Constant> = manifest.inputs.iter().map(|slot| input(slot, request, pixel)).collect();
     let entry = FunctionId(graph.functions.len() as u32 - 1);
     let value = *evaluate(&graph.functions, entry, &arguments, &mut BUDGET.clone()).ok()?.first()?;
     let component = |i: usize| match value.scalar() {

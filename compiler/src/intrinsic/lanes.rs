@@ -181,11 +181,7 @@ pub fn all1<A: Word, R: Word>([a, ..]: [&Lanes; 3], out: &mut Lanes, f: impl Fn(
 
 /// A function of two words, in all lanes.
 #[inline(always)]
-pub fn all2<A: Word, B: Word, R: Word>(
-    [a, b, _]: [&Lanes; 3],
-    out: &mut Lanes,
-    f: impl Fn(A, B) -> R,
-) {
+pub fn all2<A: Word, B: Word, R: Word>([a, b, _]: [&Lanes; 3], out: &mut Lanes, f: impl Fn(A, B) -> R) {
     for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
         *out = f(A::of(*a), B::of(*b)).bits();
     }
@@ -328,7 +324,8 @@ mod tests {
         for intrinsic in Intrinsic::all() {
             for width in 1..=4 {
                 let mut out = [ZERO; 4];
-                let vector = |k: usize| std::array::from_fn(|c| if c < width { &lanes[4 * k + c] } else { &ZERO });
+                let vector =
+                    |k: usize| std::array::from_fn(|c| if c < width { &lanes[4 * k + c] } else { &ZERO });
                 match intrinsic.row().value {
                     Evaluate::Each { all, .. } => {
                         for (c, out) in out.iter_mut().enumerate().take(width) {
@@ -343,7 +340,8 @@ mod tests {
                         Constant::new(crate::graph::Scalar::Int, (0..width).map(word))
                     };
                     let wanted = intrinsic.evaluate(&[argument(0), argument(1), argument(2)]);
-                    let found: Vec<u32> = out.iter().map(|lanes| lanes[i]).take(wanted.bits().len()).collect();
+                    let found: Vec<u32> =
+                        out.iter().map(|lanes| lanes[i]).take(wanted.bits().len()).collect();
                     assert_eq!(found, wanted.bits(), "{} of width {width}", intrinsic.row().name);
                 }
             }

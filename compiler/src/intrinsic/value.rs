@@ -87,7 +87,19 @@ pub fn remainder_int(x: i32, y: i32) -> i32 {
 
 /// Truncates and saturates; NaN is 0.
 pub fn to_int(x: f32) -> i32 {
-    x as i32
+    whole_to_int(floor(x.abs()).copysign(x))
+}
+
+/// Rounds down to an int and saturates; NaN is 0.
+pub fn floor_int(x: f32) -> i32 {
+    whole_to_int(floor(x))
+}
+
+/// As `x as i32` for a whole number, without branches: the sum's last 32 bits are the int.
+fn whole_to_int(x: f32) -> i32 {
+    let number = if x.is_nan() { 0.0 } else { x };
+    let held = f64::from(number).clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+    (held + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
 /// x to the power of y; 0 where that is not a real number.
@@ -136,7 +148,7 @@ pub fn dot<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
 
 /// Euclidean length.
 pub fn length<const N: usize>(v: [f32; N]) -> f32 {
-    finite(if N == 1 { v[0].abs() } else { libm::sqrtf(dot(v, v)) })
+    finite(if N == 1 { v[0].abs() } else { dot(v, v).sqrt() })
 }
 
 /// The same direction with length 1; 0 for 0.
@@ -221,11 +233,23 @@ pub fn bits(x: i32, first: i32, count: i32) -> i32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{ceil, floor, round};
+    use super::{ceil, floor, floor_int, round, to_int};
 
     #[test]
     fn rounding_is_that_of_libm() {
-        let edges = [0.0, 0.5, 1.0, 1.5, 2.5, 4_194_303.5, 4_194_304.5, 8_388_607.5, 8_388_608.0, 1e30];
+        let edges = [
+            0.0,
+            0.5,
+            1.0,
+            1.5,
+            2.5,
+            4_194_303.5,
+            4_194_304.5,
+            8_388_607.5,
+            8_388_608.0,
+            2_147_483_648.0,
+            1e30,
+        ];
         let near = edges.into_iter().flat_map(|x: f32| {
             (-2..=2).flat_map(move |step| {
                 let x = f32::from_bits(x.to_bits().wrapping_add_signed(step));
@@ -233,7 +257,11 @@ mod tests {
             })
         });
         let spread = (0..1 << 22).map(|i: u32| f32::from_bits(i.wrapping_mul(1021)));
-        for x in near.chain(spread).filter(|x| !x.is_nan()) {
+        for x in near.chain(spread) {
+            assert_eq!([to_int(x), floor_int(x)], [x as i32, libm::floorf(x) as i32], "{x:?}");
+            if x.is_nan() {
+                continue;
+            }
             let wanted = [libm::floorf(x), libm::ceilf(x), libm::rintf(x)].map(f32::to_bits);
             assert_eq!([floor(x), ceil(x), round(x)].map(f32::to_bits), wanted, "{x:?}");
         }

@@ -21,14 +21,15 @@ pub struct Places {
 impl Places {
     /// Of the pixels of a picture from one on, row by row.
     pub fn from(first: usize, width: usize) -> Places {
-        let (mut x, mut y) = (first % width, first / width);
         let mut places = Places { x: [0.0; LANES], y: [0.0; LANES] };
-        for (to_x, to_y) in places.x.iter_mut().zip(&mut places.y) {
-            (*to_x, *to_y) = (x as f64 + 0.5, y as f64 + 0.5);
-            x += 1;
-            if x == width {
-                (x, y) = (0, y + 1);
+        let (mut column, mut row, mut from) = (first % width, first / width, 0);
+        while from < LANES {
+            let to = LANES.min(from + width - column);
+            for (x, at) in places.x[from..to].iter_mut().zip(column as u32..) {
+                *x = f64::from(at) + 0.5;
             }
+            places.y[from..to].fill(row as f64 + 0.5);
+            (column, row, from) = (0, row + 1, to);
         }
         places
     }

@@ -36,8 +36,10 @@ pub struct Machine {
     frames: Vec<Frame>,
     /// The frames' registers, one frame after the other; as many as were ever needed.
     registers: Vec<Box<Lanes>>,
-    /// The wanted lanes.
+    /// The wanted lanes, ...
     mask: Mask,
+    /// ... and whether they are fewer than [`FEW`].
+    few: bool,
     /// Those of the arms around the step being done.
     outside: Vec<Mask>,
     /// Where a step writes before its result changes places with a register.
@@ -76,6 +78,7 @@ impl Default for Machine {
             frames: Vec::new(),
             registers: Vec::new(),
             mask: 0,
+            few: true,
             outside: Vec::new(),
             result: Box::new(ZERO),
             vector: Box::new([ZERO; 4]),
@@ -89,7 +92,7 @@ impl Machine {
     pub fn begin(&mut self, code: Code<'_>, function: usize, mask: Mask) {
         self.frames.clear();
         self.outside.clear();
-        self.mask = mask;
+        self.want(mask);
         self.enter(code, function, 0, Role::Call);
     }
 
@@ -114,7 +117,7 @@ impl Machine {
                     frame.next += 1;
                     match step {
                         Step::Arm { condition, holds, end } => self.arm(code, base, *condition, *holds, *end),
-                        Step::Join => self.mask = self.outside.pop().unwrap_or(self.mask),
+                        Step::Join => self.join(),
                         Step::Call(call) => self.call(code, planned, base, call),
                         Step::Fold(fold) => self.fold(code, planned, base, fold),
                         step => self.step(code, base, step),
@@ -124,15 +127,28 @@ impl Machine {
         }
     }
 
+    /// From now on these lanes are wanted.
+    fn want(&mut self, mask: Mask) {
+        self.mask = mask;
+        self.few = mask.count_ones() < FEW;
+    }
+
     /// Goes into an arm, or past it.
     fn arm(&mut self, code: Code<'_>, base: usize, condition: Register, holds: bool, end: usize) {
         let condition = mask_of(read(code, &self.registers, base, condition));
         let inside = self.mask & if holds { condition } else { !condition };
         if inside != 0 {
             self.outside.push(self.mask);
-            self.mask = inside;
+            self.want(inside);
         } else if let Some(frame) = self.frames.last_mut() {
             frame.next = end;
+        }
+    }
+
+    /// Leaves an arm.
+    fn join(&mut self) {
+        if let Some(mask) = self.outside.pop() {
+            self.want(mask);
         }
     }
 
@@ -144,7 +160,7 @@ impl Machine {
         match step {
             Step::Each { one, all, arguments, to } => {
                 let arguments = arguments.map(lanes);
-                if self.mask.count_ones() < FEW {
+                if self.few {
                     for i in lanes_of(self.mask) {
                         self.result[i] = one(arguments.map(|lanes| lanes[i]));
                     }
@@ -254,7 +270,8 @@ impl Machine {
         let inside = base + planned.size;
         if self.enter(code, fold.body, inside, Role::Body(0)) {
             self.copy(code, base, fold.starts.iter().copied(), inside);
-            let behind = [Register::ZERO].into_iter().chain(fold.captures.iter().copied()).chain([fold.steps]);
+            let behind =
+                [Register::ZERO].into_iter().chain(fold.captures.iter().copied()).chain([fold.steps]);
             self.copy(code, base, behind, inside + fold.starts.len());
             self.turn(code, fold);
         }
@@ -265,16 +282,16 @@ impl Machine {
         let Some(Frame { function, base, next, role: Role::Body(step), .. }) = self.frames.last_mut() else {
             return;
         };
-        let (base, step, accumulators) = (*base, *step, fold.starts.len());
+        let (function, base, step, accumulators) = (*function, *base, *step, fold.starts.len());
         let steps = &self.registers[base + accumulators + 1 + fold.captures.len()];
         let active = if step < fold.most { self.mask & above(steps, step) } else { 0 };
         if active == 0 {
             return self.end_fold(fold);
         }
         *next = 0;
-        self.mask = active;
+        self.want(active);
         *self.registers[base + accumulators] = [step; LANES];
-        let Some((condition, body)) = fold.condition.zip(code.functions.get(*function)) else { return };
+        let Some((condition, body)) = fold.condition.zip(code.functions.get(function)) else { return };
         let inside = base + body.size;
         if self.enter(code, condition, inside, Role::Condition) {
             let captures = accumulators + 1..accumulators + 1 + fold.captures.len();
@@ -288,7 +305,7 @@ impl Machine {
         let Some(frame) = self.frames.pop() else { return };
         match frame.role {
             Role::Call => {
-                self.mask = frame.mask;
+                self.want(frame.mask);
                 if let Some((base, Step::Call(call))) = self.caller(code) {
                     let output = |n: usize| planned.outputs.get(n).copied().unwrap_or(Register::ZERO);
                     for (n, to) in &call.results {
@@ -298,7 +315,8 @@ impl Machine {
             }
             Role::Condition => {
                 let holds = planned.outputs.first().copied().unwrap_or(Register::ZERO);
-                self.mask &= mask_of(read(code, &self.registers, frame.base, holds));
+                let holds = mask_of(read(code, &self.registers, frame.base, holds));
+                self.want(self.mask & holds);
                 if self.mask == 0
                     && let Some(fold) = self.running(code)
                 {
@@ -356,7 +374,7 @@ impl Machine {
     /// Ends the innermost fold: its accumulators are its outputs.
     fn end_fold(&mut self, fold: &Loop) {
         let Some(frame) = self.frames.pop() else { return };
-        self.mask = frame.mask;
+        self.want(frame.mask);
         let Some(outside) = self.frames.last() else { return };
         for (n, to) in &fold.results {
             if let Register::Frame(to) = to {
@@ -403,7 +421,10 @@ fn above(steps: &Lanes, taken: u32) -> Mask {
 
 /// The lanes that are something.
 pub fn gather(is: impl Fn(usize) -> bool) -> Mask {
-    (0..LANES).fold(0, |mask, i| mask | Mask::from(is(i)) << i)
+    let bytes: [u8; LANES] = std::array::from_fn(|i| u8::from(is(i)));
+    // The product moves the lowest bit of each of eight bytes into its highest byte.
+    let eight = |chunk: &[u8; 8]| u64::from_le_bytes(*chunk).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+    bytes.as_chunks().0.iter().rev().fold(0, |mask, chunk| mask << 8 | eight(chunk))
 }
 
 /// 1 in the lanes of a mask.

@@ -301,8 +301,7 @@ impl<'a> Planner<'a> {
         });
         let function = self.plan.functions.len();
         self.plan.functions.push(Planned { steps: vec![step], size: places.len(), ..Planned::default() });
-        let code =
-            Code { functions: &self.plan.functions, known: &self.plan.known, textures: self.textures };
+        let code = Code { functions: &self.plan.functions, known: &self.plan.known, textures: self.textures };
         self.machine.begin(code, function, 1);
         self.machine.work(code);
         let place = |register: &Register| places.get(register).copied().unwrap_or(*register);
@@ -527,13 +526,7 @@ impl<'a> Planner<'a> {
         self.push_run(value, step, outputs, cost)
     }
 
-    fn fold(
-        &mut self,
-        function: &Function,
-        value: Value,
-        fold: &Fold,
-        cost: u64,
-    ) -> Result<(), RenderError> {
+    fn fold(&mut self, function: &Function, value: Value, fold: &Fold, cost: u64) -> Result<(), RenderError> {
         let starts = self.flat(function, &fold.starts);
         let outputs: Vec<Register> = starts.iter().map(|_| self.fresh()).collect();
         let step = Step::Fold(Box::new(Loop {
@@ -576,9 +569,9 @@ impl<'a> Planner<'a> {
         match operation {
             Operation::Call(id, _) => of(*id).saturating_add(1),
             Operation::Fold(fold) => {
-                let steps = self.bits(self.scalar(fold.steps)).map_or(fold.most, |bits| {
-                    u32::try_from(bits as i32).unwrap_or(0).min(fold.most)
-                });
+                let steps = self
+                    .bits(self.scalar(fold.steps))
+                    .map_or(fold.most, |bits| u32::try_from(bits as i32).unwrap_or(0).min(fold.most));
                 let step = of(fold.body).saturating_add(fold.condition.map_or(0, of)).saturating_add(1);
                 step.saturating_mul(u64::from(steps)).saturating_add(1)
             }

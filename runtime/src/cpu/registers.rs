@@ -11,7 +11,8 @@ use super::plan::{Planned, Register, Step};
 /// are never used for anything else; further inputs keep it until they have been read.
 pub fn allocate(planned: &mut Planned, registers: usize, pinned: usize) {
     let last = remove_dead(planned, registers);
-    let mut sharing = Sharing { places: vec![0; registers], free: Vec::new(), size: pinned.max(planned.inputs) };
+    let mut sharing =
+        Sharing { places: vec![0; registers], free: Vec::new(), size: pinned.max(planned.inputs) };
     for input in 0..planned.inputs {
         sharing.places[input] = input as u32;
     }

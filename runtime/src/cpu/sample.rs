@@ -35,31 +35,18 @@ impl Texture {
     }
 
     /// Filtered samples; level and layer are clamped to what there is.
-    pub fn sample(
-        &self,
-        at: [&Lanes; 2],
-        level: &Lanes,
-        layer: &Lanes,
-        mask: Mask,
-        to: &mut [Lanes; 4],
-    ) {
-        let last = self.levels.len() - 1;
+    pub fn sample(&self, [x, y]: [&Lanes; 2], level: &Lanes, layer: &Lanes, mask: Mask, to: &mut [Lanes; 4]) {
         let Texels::Float(texels) = &self.texels else {
             *to = [ZERO; 4];
             return;
         };
-        let [x, y] = at.map(|lanes| self.places(lanes));
+        let fetch = Fetch { texture: self, texels, x: self.places(x), y: self.places(y), layer };
+        let last = self.levels.len() - 1;
         // `max` turns what is no number into 0.
         let level = level.map(|bits| f32::from_bits(bits).max(0.0).min(last as f32));
-        let fetch = Fetch { texture: self, texels, x, y, layer };
-        let texels = match self.filter {
-            Filter::Nearest => fetch.nearest(&level, mask),
-            Filter::Linear => fetch.linear(&level, mask),
-        };
-        for (i, texel) in texels.iter().enumerate() {
-            for (to, component) in to.iter_mut().zip(texel.to_array()) {
-                to[i] = component.to_bits();
-            }
+        match self.filter {
+            Filter::Nearest => fetch.nearest(&level, mask, to),
+            Filter::Linear => fetch.linear(&level, mask, to),
         }
     }
 
@@ -94,53 +81,48 @@ struct Fetch<'a> {
 
 impl Fetch<'_> {
     /// Two levels weighed linearly; one where the level of detail is whole.
-    fn linear(&self, level: &Places, mask: Mask) -> [Vec4; LANES] {
-        let mut result = [Vec4::ZERO; LANES];
-        let upper = level.map(|level| level as usize);
-        let share: Places = std::array::from_fn(|i| level[i] - upper[i] as f32);
+    fn linear(&self, level: &Places, mask: Mask, to: &mut [Lanes; 4]) {
+        let upper = level.map(floor);
         let mut left = mask;
         while let Some(first) = lanes_of(left).next() {
             let sharp = upper[first];
             let same = left & gather(|i| upper[i] == sharp);
             left &= !same;
-            self.bilinear(sharp, same, |i, texel| result[i] = texel);
-            let blurred = same & gather(|i| share[i] != 0.0);
-            if blurred != 0 {
-                self.bilinear(sharp + 1, blurred, |i, texel| result[i] = result[i].lerp(texel, share[i]));
-            }
+            self.two_levels(sharp as usize, &level.map(|level| level - sharp), same, to);
         }
-        result
+    }
+
+    /// A level, weighed with the next by the share of that.
+    fn two_levels(&self, level: usize, share: &Places, mask: Mask, to: &mut [Lanes; 4]) {
+        let Some(sharp) = self.bilinear(level) else { return };
+        let next = if mask & gather(|i| share[i] != 0.0) != 0 { self.bilinear(level + 1) } else { None };
+        for i in lanes_of(mask) {
+            let texel = match &next {
+                Some(next) if share[i] != 0.0 => sharp.texel(i).lerp(next.texel(i), share[i]),
+                _ => sharp.texel(i),
+            };
+            store(texel, i, to);
+        }
     }
 
     /// Four texels of a level weighed linearly.
-    fn bilinear(&self, level: usize, mask: Mask, mut visit: impl FnMut(usize, Vec4)) {
-        let Some(level) = self.texture.levels.get(level) else { return };
-        let across = self.axis(&self.x, level.size.x);
-        let down = self.axis(&self.y, level.size.y);
+    fn bilinear(&self, level: usize) -> Option<Bilinear<'_>> {
+        let level = self.texture.levels.get(level)?;
+        let (x, y) = (self.axis(&self.x, level.size.x), self.axis(&self.y, level.size.y));
         let rows = |row: &[i32; LANES]| row.map(|row| row * level.size.x);
-        let (low_rows, high_rows) = (rows(&down.low), rows(&down.high));
-        for i in lanes_of(mask) {
-            let texels = self.layer(level, i);
-            let texel = |x: i32, row: i32| texels.get((row + x) as usize).copied().unwrap_or(Vec4::ZERO);
-            let (low, high, share) = (across.low[i], across.high[i], across.share[i]);
-            let upper = texel(low, low_rows[i]).lerp(texel(high, low_rows[i]), share);
-            let lower = texel(low, high_rows[i]).lerp(texel(high, high_rows[i]), share);
-            visit(i, upper.lerp(lower, down.share[i]));
-        }
+        Some(Bilinear { fetch: self, level, rows: [rows(&y.low), rows(&y.high)], x, down: y.share })
     }
 
     /// The nearest texel of the nearest level.
-    fn nearest(&self, level: &Places, mask: Mask) -> [Vec4; LANES] {
-        let mut result = [Vec4::ZERO; LANES];
+    fn nearest(&self, level: &Places, mask: Mask, to: &mut [Lanes; 4]) {
         for i in lanes_of(mask) {
             let level = ((level[i] + 0.5).ceil() as usize).max(1) - 1;
             let Some(level) = self.texture.levels.get(level) else { continue };
-            let place = |place: f32, size: i32| self.inside(floor(place * size as f32) as i32, size);
+            let place = |place: f32, size: i32| self.inside(small_int(floor(place * size as f32)), size);
             let (x, y) = (place(self.x[i], level.size.x), place(self.y[i], level.size.y));
             let at = (y * level.size.x + x) as usize;
-            result[i] = self.layer(level, i).get(at).copied().unwrap_or(Vec4::ZERO);
+            store(self.layer(level, i).get(at).copied().unwrap_or(Vec4::ZERO), i, to);
         }
-        result
     }
 
     /// The texels of a lane's layer.
@@ -168,6 +150,35 @@ impl Fetch<'_> {
     }
 }
 
+/// Four texels of a level in all lanes, and their shares.
+struct Bilinear<'a> {
+    fetch: &'a Fetch<'a>,
+    level: &'a Level,
+    x: Axis,
+    /// Where the upper and the lower row begin.
+    rows: [[i32; LANES]; 2],
+    /// The share of the lower row.
+    down: Places,
+}
+
+impl Bilinear<'_> {
+    /// What they come to in a lane.
+    #[inline(always)]
+    fn texel(&self, i: usize) -> Vec4 {
+        let texels = self.fetch.layer(self.level, i);
+        let texel = |x: i32, row: i32| texels.get((row + x) as usize).copied().unwrap_or(Vec4::ZERO);
+        let row = |row: i32| texel(self.x.low[i], row).lerp(texel(self.x.high[i], row), self.x.share[i]);
+        row(self.rows[0][i]).lerp(row(self.rows[1][i]), self.down[i])
+    }
+}
+
+/// A texel becomes what a lane has.
+fn store(texel: Vec4, i: usize, to: &mut [Lanes; 4]) {
+    for (to, component) in to.iter_mut().zip(texel.to_array()) {
+        to[i] = component.to_bits();
+    }
+}
+
 /// Two texels next to each other along an axis, and the share of the second.
 struct Axis {
     low: [i32; LANES],
@@ -176,13 +187,21 @@ struct Axis {
 }
 
 fn axis(places: &Places, size: i32, inside: impl Fn(i32) -> i32) -> Axis {
-    let places = places.map(|place| place * size as f32 - 0.5);
-    let first = places.map(floor);
-    Axis {
-        low: first.map(|first| inside(first as i32)),
-        high: first.map(|first| inside(first as i32 + 1)),
-        share: std::array::from_fn(|i| places[i] - first[i]),
+    let mut axis = Axis { low: [0; LANES], high: [0; LANES], share: [0.0; LANES] };
+    let places = places.iter().map(|place| place * size as f32 - 0.5);
+    let slots = axis.low.iter_mut().zip(&mut axis.high).zip(&mut axis.share);
+    for (((low, high), share), place) in slots.zip(places) {
+        let first = floor(place);
+        let number = small_int(first);
+        (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
     }
+    axis
+}
+
+/// A whole number below 2²² as an int: the sum's last bits. `as` would not be done side by side.
+fn small_int(x: f32) -> i32 {
+    const BASE: f32 = 12_582_912.0;
+    (x + BASE).to_bits().wrapping_sub(BASE.to_bits()) as i32
 }
 
 /// A texel's place in a picture that repeats; it is less than a period outside.
