@@ -11,6 +11,7 @@
 //! graph ──remove_dead──▶ planner ──▶ steps ──registers──▶ plan ──machine──▶ pixels
 //! ```
 
+mod draw;
 mod inputs;
 mod machine;
 mod plan;
@@ -21,20 +22,14 @@ mod texture;
 
 use crate::bake::{self, Bake};
 use crate::pass::{self, Pass};
-use crate::picture::Picture;
+use crate::picture::{Content, Picture};
 use crate::progress::Progress;
 use crate::render::{RenderError, Request};
 use crate::resource::Tables;
 use crate::settings::Settings;
-use inputs::Places;
-use machine::{Code, Machine, Mask};
-use plan::{Drawn, Plan};
-use rayon::iter::{IndexedParallelIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use draw::draw;
 use texgraph_compiler::Program;
-use texgraph_compiler::graph::{Graph, Scalar};
-use texgraph_compiler::intrinsic::{LANES, Lanes, ZERO};
+use texgraph_compiler::graph::Graph;
 use texgraph_compiler::pass::remove_dead;
 use texture::Texture;
 
@@ -89,7 +84,8 @@ impl<'a> Scene<'a> {
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<Picture, RenderError> {
         let request = Request { output: self.output, ..request.clone() };
-        let mut picture = request.picture(self.program)?;
+        let content = request.content(self.program)?;
+        request.check()?;
         let stale = self.bakes.iter().filter(|bake| bake.is_stale(&request.settings)).map(Bake::size);
         let mut progress = Progress::new(progress, stale.chain([request.size]));
         for n in 0..self.bakes.len() {
@@ -98,8 +94,8 @@ impl<'a> Scene<'a> {
             }
         }
         let progress = progress.next(request.size);
-        draw(&self.pass, &self.graph, &self.textures, &request, &mut picture, &progress)?;
-        Ok(picture)
+        let pixels = draw(&self.pass, &self.graph, &self.textures, &request, &progress)?;
+        Ok(Picture { size: request.size, pixels, content })
     }
 
     /// How many bakes have been drawn for all pictures so far.
@@ -128,13 +124,12 @@ impl<'a> Scene<'a> {
     ) -> Result<Vec<u8>, RenderError> {
         let bake = &mut self.bakes[n];
         let request = bake.request(settings);
-        let drawn = request.blank().and_then(|mut picture| {
-            let progress = progress.next(request.size);
+        let drawn = request.check().and_then(|()| {
             let graph = only(&bake.pass.code.graph, request.output);
-            draw(&bake.pass, &graph, &self.textures, &request, &mut picture, &progress)?;
-            Ok(picture)
+            draw(&bake.pass, &graph, &self.textures, &request, &progress.next(request.size))
         });
-        let texels = bake.texels(&drawn.map_err(|error| bake.failed(error))?);
+        let pixels = drawn.map_err(|error| bake.failed(error))?;
+        let texels = bake.texels(&Picture { size: request.size, pixels, content: Content::Data });
         texture::replace(&mut self.textures, bake, &texels);
         bake.keep(settings);
         self.drawn += 1;
@@ -149,70 +144,4 @@ fn only(graph: &Graph, output: usize) -> Graph {
         entry.outputs = entry.outputs.get(output).cloned().into_iter().collect();
     }
     remove_dead::run(graph)
-}
-
-/// Batches that one thread takes on at least.
-const LEAST_BATCHES: usize = 32;
-
-/// Draws the output of a graph into a blank picture.
-fn draw(
-    pass: &Pass<'_>,
-    graph: &Graph,
-    textures: &[Texture],
-    request: &Request,
-    picture: &mut Picture,
-    progress: &(dyn Fn(f32) + Sync),
-) -> Result<(), RenderError> {
-    let plan = Plan::new(pass, graph, request, textures)?;
-    let Some(output) = &plan.output else { return Ok(()) };
-    let code = Code { functions: &plan.functions, known: &plan.known, textures };
-    let [width, height] = request.size.map(|side| side as usize);
-    let done = AtomicUsize::new(0);
-    let batches = picture.pixels.par_chunks_mut(LANES).enumerate().with_min_len(LEAST_BATCHES);
-    batches.for_each_init(Machine::default, |machine, (n, pixels)| {
-        let mask = Mask::MAX >> (LANES - pixels.len());
-        machine.begin(code, plan.entry, mask);
-        let places = Places::from(n * LANES, width);
-        for (i, source) in plan.inputs.iter().enumerate() {
-            if let Some(lanes) = machine.input(i) {
-                source.fill(&places, lanes);
-            }
-        }
-        machine.work(code);
-        output.write(output.components.map(|register| machine.lanes(code, register)), pixels);
-        let before = done.fetch_add(pixels.len(), Ordering::Relaxed);
-        for row in before / width..(before + pixels.len()) / width {
-            progress((row + 1) as f32 / height as f32);
-        }
-    });
-    Ok(())
-}
-
-impl Drawn {
-    /// Writes pixels as four floats each, as the manifest's `Output` says.
-    fn write(&self, components: [&Lanes; 4], pixels: &mut [[f32; 4]]) {
-        let lanes = match self.width {
-            1 => [Some(components[0]), Some(components[0]), Some(components[0]), None],
-            2 => [Some(components[0]), Some(components[1]), Some(&ZERO), None],
-            3 => [Some(components[0]), Some(components[1]), Some(components[2]), None],
-            _ => components.map(Some),
-        };
-        let mut floats = [[1.0; LANES]; 4];
-        for (floats, lanes) in floats.iter_mut().zip(lanes) {
-            if let Some(lanes) = lanes {
-                *floats = self.floats(lanes);
-            }
-        }
-        for (i, pixel) in pixels.iter_mut().enumerate().take(LANES) {
-            *pixel = [floats[0][i], floats[1][i], floats[2][i], floats[3][i]];
-        }
-    }
-
-    fn floats(&self, lanes: &Lanes) -> [f32; LANES] {
-        match self.scalar {
-            Scalar::Float => lanes.map(f32::from_bits),
-            Scalar::Int => lanes.map(|bits| bits as i32 as f32),
-            Scalar::Bool => lanes.map(|bits| if bits != 0 { 1.0 } else { 0.0 }),
-        }
-    }
 }

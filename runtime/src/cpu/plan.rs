@@ -32,9 +32,7 @@ pub struct Plan {
 pub struct Drawn {
     /// The type of a component.
     pub scalar: Scalar,
-    /// Components.
-    pub width: u8,
-    /// Where they are.
+    /// Four components, as the manifest's `Output` widens them.
     pub components: Components,
 }
 

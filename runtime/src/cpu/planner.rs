@@ -14,7 +14,7 @@ use crate::render::{RenderError, Request};
 use std::collections::HashMap;
 use texgraph_compiler::graph::regions::{Branch, Region, Regions, Weights};
 use texgraph_compiler::graph::{
-    Axis, Constant, Fold, Function, FunctionId, Graph, Level, Operation, ParamId, Type, Value,
+    Axis, Constant, Fold, Function, FunctionId, Graph, Level, Operation, ParamId, Scalar, Type, Value,
 };
 use texgraph_compiler::intrinsic::{Evaluate, Intrinsic, LANES};
 use texgraph_compiler::manifest;
@@ -123,22 +123,14 @@ impl<'a> Planner<'a> {
         let regions = Regions::of(function, weights);
         self.region(function, &regions, Region::TOP)?;
         bound(self.planned.cost)?;
-        if id == self.plan.entry {
-            self.plan.output = function.outputs.first().and_then(|(_, value)| {
-                let Type::Vector(scalar, width) = function.ty(*value) else { return None };
-                Some(Drawn { scalar, width, components: [Register::ZERO; 4] })
-            });
-        }
         for (_, value) in &function.outputs {
             let components = self.components(*value);
             self.planned.outputs.extend(components.iter().take(usize::from(function.ty(*value).width())));
         }
         let pinned = if is_body { self.planned.inputs + 1 } else { 0 };
         allocate(&mut self.planned, self.registers, pinned);
-        if let Some(output) = self.plan.output.as_mut() {
-            for (to, from) in output.components.iter_mut().zip(&self.planned.outputs) {
-                *to = *from;
-            }
+        if id == self.plan.entry {
+            self.plan.output = function.outputs.first().and_then(|(slot, _)| self.drawn(slot.ty));
         }
         self.plan.functions.push(std::mem::take(&mut self.planned));
         Ok(())
@@ -206,6 +198,20 @@ impl<'a> Planner<'a> {
             Axis::Y => slope.down(),
         };
         change.map(|x| self.number(x.to_bits()))
+    }
+
+    /// The entry's only output, widened: three times a scalar, 0 and 1 for what is missing.
+    fn drawn(&mut self, ty: Type) -> Option<Drawn> {
+        let scalar = ty.scalar()?;
+        let one = self.number(if scalar == Scalar::Float { 1f32.to_bits() } else { 1 });
+        let components = match self.planned.outputs[..] {
+            [x] => [x, x, x, one],
+            [x, y] => [x, y, Register::ZERO, one],
+            [x, y, z] => [x, y, z, one],
+            [x, y, z, w, ..] => [x, y, z, w],
+            [] => return None,
+        };
+        Some(Drawn { scalar, components })
     }
 
     fn set(&mut self, value: Value, state: State) {
