@@ -210,30 +210,75 @@ fn lanes_that_part_are_what_each_pixel_is_alone() {
     }
 }
 
-/// Sizes at which pictures end at, before and after the end of a batch, in one row and in many, on
-/// one thread and on more: each pixel is what it is in a picture of its own.
+/// A program with its tables, from a file.
+fn loaded(file: &Path) -> (Program, Tables) {
+    let library = Library::standard().expect("the library parses");
+    let project = Project::new(file, true);
+    let compiled = compile(&library, project.main(), &project, &Options::default());
+    let mut program = compiled.expect("the file compiles").program;
+    let tables = load(&mut program, &project).expect("the file loads");
+    (program, tables)
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// One pixel of 256 a unit, in a picture of its own.
+fn single(scene: &mut cpu::Scene<'_>, [x, y]: [u32; 2]) -> [u32; 4] {
+    let [x0, y0, x1, y1] = [x, y, x + 1, y + 1].map(|i| f64::from(i) / 256.0);
+    let request = Request { region: [x0, y0, x1, y1], time: 1.25, ..Request::new([1, 1]) };
+    scene.render(&request, &|_| {}).expect("it renders").pixels[0].map(f32::to_bits)
+}
+
+/// A corner of 256 pixels a unit.
+fn corner(size: [u32; 2]) -> Request {
+    let [x, y] = size.map(|side| f64::from(side) / 256.0);
+    Request { region: [0.0, 0.0, x, y], time: 1.25, ..Request::new(size) }
+}
+
+/// Textures included: a batch of one lane is what a lane of a full batch is.
+#[test]
+fn examples_are_what_each_pixel_is_in_a_picture_of_its_own() {
+    let size = [97, 5];
+    for folder in ["examples", "tests/golden"] {
+        for entry in std::fs::read_dir(root().join(folder)).expect("there is a folder") {
+            let file = entry.expect("it can be read").path();
+            if file.extension().is_none_or(|extension| extension != "tex") {
+                continue;
+            }
+            let (program, tables) = loaded(&file);
+            for output in 0..program.manifest.outputs.len() {
+                let mut scene = cpu::Scene::new(&program, &tables, output).expect("the tables are whole");
+                let pixels = scene.render(&corner(size), &|_| {}).expect("it renders").pixels;
+                for at in (0..size[0] * size[1]).step_by(13) {
+                    let alone = single(&mut scene, [at % size[0], at / size[0]]);
+                    let found = pixels[at as usize].map(f32::to_bits);
+                    assert_eq!(found, alone, "{}, output {output}, pixel {at}", file.display());
+                }
+            }
+        }
+    }
+}
+
+/// Sizes at which pictures end at, before and after the end of a batch, in one row and in many.
 #[test]
 fn a_picture_may_end_anywhere_in_a_batch_and_have_any_threads() {
-    let library = Library::standard().expect("the library parses");
-    let tiling = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tiling.tex");
-    let project = Project::new(&tiling, false);
-    let compiled = compile(&library, project.main(), &project, &Options::default());
-    let mut program = compiled.expect("the example compiles").program;
-    let tables = load(&mut program, &project).expect("the example loads");
+    let (program, tables) = loaded(&root().join("examples/tiling.tex"));
+    let mut scene = cpu::Scene::new(&program, &tables, 0).expect("the tables are whole");
     for size in [[1, 1], [63, 1], [64, 1], [65, 1], [1, 129], [64, 3], [67, 70], [200, 33]] {
-        let [x, y] = size.map(f64::from);
-        let whole = Request { region: [0.0, 0.0, x / 256.0, y / 256.0], ..Request::new(size) };
-        let draw = |threads: usize, request: &Request| {
+        let draw = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-            pool.install(|| cpu::render(&program, &tables, request, &|_| {})).expect("it renders").pixels
+            let draw = || cpu::render(&program, &tables, &corner(size), &|_| {});
+            pool.install(draw).expect("it renders").pixels
         };
-        let pixels = draw(1, &whole);
-        assert!([2, 3].into_iter().all(|threads| draw(threads, &whole) == pixels), "{size:?}");
+        let pixels = draw(1);
+        assert_eq!(pixels.len() as u32, size[0] * size[1]);
+        assert!([2, 3].into_iter().all(|threads| draw(threads) == pixels), "{size:?}");
         for at in [0, pixels.len() / 2, pixels.len() - 1] {
-            let [x, y] = [at as u32 % size[0], at as u32 / size[0]].map(|i| f64::from(i) / 256.0);
-            let step = 1.0 / 256.0;
-            let single = Request { region: [x, y, x + step, y + step], ..Request::new([1, 1]) };
-            assert_eq!(draw(1, &single)[0], pixels[at], "{size:?}, pixel {at}");
+            let place = [at as u32 % size[0], at as u32 / size[0]];
+            let found = pixels[at].map(f32::to_bits);
+            assert_eq!(found, single(&mut scene, place), "{size:?}, pixel {at}");
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Draws a picture: a machine for each thread, batch after batch.
 
 use super::inputs::Places;
-use super::machine::{Code, Machine, Mask};
+use super::machine::{Code, Machine};
+use super::mask::Mask;
 use super::plan::{Drawn, Plan};
 use super::texture::Texture;
 use crate::pass::Pass;

@@ -14,6 +14,7 @@
 mod draw;
 mod inputs;
 mod machine;
+mod mask;
 mod plan;
 mod planner;
 mod registers;

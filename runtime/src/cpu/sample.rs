@@ -7,7 +7,7 @@
 //! A batch is sampled level by level: which texels a level gives and how they are weighed is worked
 //! out for all lanes side by side, then the texels are gathered for the lanes that want the level.
 
-use super::machine::{Mask, gather, lanes_of};
+use super::mask::{Mask, gather, lanes_of};
 use super::texture::{Level, Texels, Texture};
 use glam::Vec4;
 use texgraph_compiler::intrinsic::{LANES, Lanes, ZERO, floor};

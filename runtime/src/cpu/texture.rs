@@ -1,6 +1,6 @@
 //! Textures of the CPU renderer: tables with their texels decoded.
 
-use super::machine::{Mask, lanes_of};
+use super::mask::{Mask, lanes_of};
 use crate::bake::Bake;
 use crate::pass::Pass;
 use crate::render::RenderError;
