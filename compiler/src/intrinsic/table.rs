@@ -302,7 +302,7 @@ pub static TABLE: &[Row] = &[
         name: "sign",
         signature: "<n>(x: ivec<n>) -> ivec<n>",
         doc: "-1, 0 or 1.",
-        value: each!((i32) -> i32, i32::signum),
+        value: each!((i32) -> i32, |x| i32::from(x > 0) - i32::from(x < 0)),
         derivative: Zero,
         form: Function("sign"),
     },

@@ -98,7 +98,7 @@ pub fn floor_int(x: f32) -> i32 {
 /// As `x as i32` for a whole number, without branches: the sum's last 32 bits are the int.
 fn whole_to_int(x: f32) -> i32 {
     let number = if x.is_nan() { 0.0 } else { x };
-    let held = f64::from(number).clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+    let held = f64::from(number).max(f64::from(i32::MIN)).min(f64::from(i32::MAX));
     (held + 6_755_399_441_055_744.0).to_bits() as i32
 }
 

@@ -3,7 +3,7 @@
 use super::inputs::Places;
 use super::machine::{Code, Machine};
 use super::mask::Mask;
-use super::plan::{Drawn, Plan};
+use super::plan::Plan;
 use super::texture::Texture;
 use crate::pass::Pass;
 use crate::render::{RenderError, Request};
@@ -65,16 +65,16 @@ fn shade(plan: &Plan, textures: &[Texture], machine: &mut Machine, places: &Plac
     }
     machine.work(code);
     let Some(output) = &plan.output else { return [[0.0; 4]; LANES] };
-    let [r, g, b, a] = output.components.map(|register| output.floats(machine.lanes(code, register)));
-    std::array::from_fn(|i| [r[i], g[i], b[i], a[i]])
+    let lanes = output.components.map(|register| machine.lanes(code, register));
+    match output.scalar {
+        Scalar::Float => pixels_of(lanes, f32::from_bits),
+        Scalar::Int => pixels_of(lanes, |bits| bits as i32 as f32),
+        Scalar::Bool => pixels_of(lanes, |bits| if bits != 0 { 1.0 } else { 0.0 }),
+    }
 }
 
-impl Drawn {
-    fn floats(&self, lanes: &Lanes) -> [f32; LANES] {
-        match self.scalar {
-            Scalar::Float => lanes.map(f32::from_bits),
-            Scalar::Int => lanes.map(|bits| bits as i32 as f32),
-            Scalar::Bool => lanes.map(|bits| if bits != 0 { 1.0 } else { 0.0 }),
-        }
-    }
+/// Pixels of four components, as floats.
+#[inline(always)]
+fn pixels_of([r, g, b, a]: [&Lanes; 4], float: impl Fn(u32) -> f32) -> Batch {
+    std::array::from_fn(|i| [float(r[i]), float(g[i]), float(b[i]), float(a[i])])
 }

@@ -13,6 +13,9 @@ use glam::Vec4;
 use texgraph_compiler::intrinsic::{LANES, Lanes, ZERO, floor};
 use texgraph_compiler::manifest::{Filter, Wrap};
 
+/// A coordinate in all lanes, or something like it.
+type Places = [f32; LANES];
+
 impl Texture {
     /// The level of detail of a coordinate whose screen derivatives are (dx, dy): log2 of the
     /// longer one in texels. Not clamped; −∞ for a constant coordinate.
@@ -22,7 +25,7 @@ impl Texture {
             let (x, y) = (f32::from_bits(x[i]) * size.x, f32::from_bits(y[i]) * size.y);
             x * x + y * y
         };
-        let longer: [f32; LANES] = std::array::from_fn(|i| squared(dx, i).max(squared(dy, i)));
+        let longer: Places = std::array::from_fn(|i| squared(dx, i).max(squared(dy, i)));
         // Neighbours often have the same gradient, and logarithms are dear.
         let (mut last, mut level) = (f32::NAN, 0);
         for i in lanes_of(mask) {
@@ -33,150 +36,27 @@ impl Texture {
             to[i] = level;
         }
     }
-
-    /// Filtered samples; level and layer are clamped to what there is.
-    pub fn sample(&self, [x, y]: [&Lanes; 2], level: &Lanes, layer: &Lanes, mask: Mask, to: &mut [Lanes; 4]) {
-        let Texels::Float(texels) = &self.texels else {
-            *to = [ZERO; 4];
-            return;
-        };
-        let fetch = Fetch { texture: self, texels, x: self.places(x), y: self.places(y), layer };
-        let last = self.levels.len() - 1;
-        // `max` turns what is no number into 0.
-        let level = level.map(|bits| f32::from_bits(bits).max(0.0).min(last as f32));
-        match self.filter {
-            Filter::Nearest => fetch.nearest(&level, mask, to),
-            Filter::Linear => fetch.linear(&level, mask, to),
-        }
-    }
-
-    /// Coordinates in the first period: exact before they are scaled to texels, and finite.
-    fn places(&self, lanes: &Lanes) -> Places {
-        match self.wrap {
-            Wrap::Repeat => places(lanes, |x| x - floor(x)),
-            Wrap::Mirror => places(lanes, |x| x - 2.0 * floor(x * 0.5)),
-            Wrap::Clamp => places(lanes, |x| x.clamp(-1.0, 2.0)),
-        }
-    }
 }
 
-/// A coordinate of all lanes, or something like it.
-type Places = [f32; LANES];
-
-fn places(lanes: &Lanes, reduce: impl Fn(f32) -> f32) -> Places {
-    lanes.map(|bits| {
-        let reduced = reduce(f32::from_bits(bits));
-        if reduced.is_finite() { reduced } else { 0.0 }
-    })
-}
-
-/// What is sampled: where, of which layer.
-struct Fetch<'a> {
-    texture: &'a Texture,
-    texels: &'a [Vec4],
+/// Takes samples; keeps its memory from one to the next.
+pub struct Sampler {
+    /// Coordinates in the first period.
     x: Places,
     y: Places,
-    layer: &'a Lanes,
+    /// Levels of detail, clamped, ...
+    lod: Places,
+    /// ... rounded down, ...
+    upper: Places,
+    /// ... and what is left: the share of the next level.
+    share: Places,
+    /// The texels of two levels.
+    taps: [Taps; 2],
 }
 
-impl Fetch<'_> {
-    /// Two levels weighed linearly; one where the level of detail is whole.
-    fn linear(&self, level: &Places, mask: Mask, to: &mut [Lanes; 4]) {
-        let upper = level.map(floor);
-        let mut left = mask;
-        while let Some(first) = lanes_of(left).next() {
-            let sharp = upper[first];
-            let same = left & gather(|i| upper[i] == sharp);
-            left &= !same;
-            self.two_levels(sharp as usize, &level.map(|level| level - sharp), same, to);
-        }
-    }
-
-    /// A level, weighed with the next by the share of that.
-    fn two_levels(&self, level: usize, share: &Places, mask: Mask, to: &mut [Lanes; 4]) {
-        let Some(sharp) = self.bilinear(level) else { return };
-        let next = if mask & gather(|i| share[i] != 0.0) != 0 { self.bilinear(level + 1) } else { None };
-        for i in lanes_of(mask) {
-            let texel = match &next {
-                Some(next) if share[i] != 0.0 => sharp.texel(i).lerp(next.texel(i), share[i]),
-                _ => sharp.texel(i),
-            };
-            store(texel, i, to);
-        }
-    }
-
-    /// Four texels of a level weighed linearly.
-    fn bilinear(&self, level: usize) -> Option<Bilinear<'_>> {
-        let level = self.texture.levels.get(level)?;
-        let (x, y) = (self.axis(&self.x, level.size.x), self.axis(&self.y, level.size.y));
-        let rows = |row: &[i32; LANES]| row.map(|row| row * level.size.x);
-        Some(Bilinear { fetch: self, level, rows: [rows(&y.low), rows(&y.high)], x, down: y.share })
-    }
-
-    /// The nearest texel of the nearest level.
-    fn nearest(&self, level: &Places, mask: Mask, to: &mut [Lanes; 4]) {
-        for i in lanes_of(mask) {
-            let level = ((level[i] + 0.5).ceil() as usize).max(1) - 1;
-            let Some(level) = self.texture.levels.get(level) else { continue };
-            let place = |place: f32, size: i32| self.inside(small_int(floor(place * size as f32)), size);
-            let (x, y) = (place(self.x[i], level.size.x), place(self.y[i], level.size.y));
-            let at = (y * level.size.x + x) as usize;
-            store(self.layer(level, i).get(at).copied().unwrap_or(Vec4::ZERO), i, to);
-        }
-    }
-
-    /// The texels of a lane's layer.
-    fn layer(&self, level: &Level, lane: usize) -> &[Vec4] {
-        let layer = (self.layer[lane] as i32).clamp(0, level.layers - 1);
-        self.texels.get(level.index(layer)..).unwrap_or(&[])
-    }
-
-    /// The two texels next to each place along one axis.
-    fn axis(&self, places: &Places, size: i32) -> Axis {
-        match self.texture.wrap {
-            Wrap::Repeat => axis(places, size, |at| wrapped(at, size)),
-            Wrap::Clamp => axis(places, size, |at| at.clamp(0, size - 1)),
-            Wrap::Mirror => axis(places, size, |at| mirrored(at, size)),
-        }
-    }
-
-    /// A texel's place inside a level.
-    fn inside(&self, at: i32, size: i32) -> i32 {
-        match self.texture.wrap {
-            Wrap::Repeat => wrapped(at, size),
-            Wrap::Clamp => at.clamp(0, size - 1),
-            Wrap::Mirror => mirrored(at, size),
-        }
-    }
-}
-
-/// Four texels of a level in all lanes, and their shares.
-struct Bilinear<'a> {
-    fetch: &'a Fetch<'a>,
-    level: &'a Level,
+/// Four texels of a level in all lanes.
+struct Taps {
     x: Axis,
-    /// Where the upper and the lower row begin.
-    rows: [[i32; LANES]; 2],
-    /// The share of the lower row.
-    down: Places,
-}
-
-impl Bilinear<'_> {
-    /// What they come to in a lane.
-    #[inline(always)]
-    fn texel(&self, i: usize) -> Vec4 {
-        let texels = self.fetch.layer(self.level, i);
-        let texel = |x: i32, row: i32| texels.get((row + x) as usize).copied().unwrap_or(Vec4::ZERO);
-        let row = |row: i32| texel(self.x.low[i], row).lerp(texel(self.x.high[i], row), self.x.share[i]);
-        row(self.rows[0][i]).lerp(row(self.rows[1][i]), self.down[i])
-    }
-}
-
-/// A texel becomes what a lane has.
-fn store(texel: Vec4, i: usize, to: &mut [Lanes; 4]) {
-    for (to, component) in to.iter_mut().zip(texel.to_array()) {
-        to[i] = component.to_bits();
-    }
+    y: Axis,
 }
 
 /// Two texels next to each other along an axis, and the share of the second.
@@ -186,22 +66,192 @@ struct Axis {
     share: Places,
 }
 
-fn axis(places: &Places, size: i32, inside: impl Fn(i32) -> i32) -> Axis {
-    let mut axis = Axis { low: [0; LANES], high: [0; LANES], share: [0.0; LANES] };
-    let places = places.iter().map(|place| place * size as f32 - 0.5);
-    let slots = axis.low.iter_mut().zip(&mut axis.high).zip(&mut axis.share);
-    for (((low, high), share), place) in slots.zip(places) {
-        let first = floor(place);
-        let number = small_int(first);
-        (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
+impl Default for Sampler {
+    fn default() -> Sampler {
+        let none = || Axis { low: [0; LANES], high: [0; LANES], share: [0.0; LANES] };
+        let taps = || Taps { x: none(), y: none() };
+        let [x, y, lod, upper, share] = [[0.0; LANES]; 5];
+        Sampler { x, y, lod, upper, share, taps: [taps(), taps()] }
     }
-    axis
+}
+
+impl Sampler {
+    /// Filtered samples of a texture; level and layer are clamped to what there is.
+    pub fn sample(
+        &mut self,
+        texture: &Texture,
+        [x, y]: [&Lanes; 2],
+        [lod, layer]: [&Lanes; 2],
+        mask: Mask,
+        to: &mut [Lanes; 4],
+    ) {
+        let Texels::Float(texels) = &texture.texels else {
+            *to = [ZERO; 4];
+            return;
+        };
+        reduce(texture.wrap, x, &mut self.x);
+        reduce(texture.wrap, y, &mut self.y);
+        let last = (texture.levels.len() - 1) as f32;
+        for (to, bits) in self.lod.iter_mut().zip(lod) {
+            // `max` turns what is no number into 0.
+            *to = f32::from_bits(*bits).max(0.0).min(last);
+        }
+        let layers = Layers { texels, layer };
+        match texture.filter {
+            Filter::Nearest => self.nearest(texture, &layers, mask, to),
+            Filter::Linear => self.linear(texture, &layers, mask, to),
+        }
+    }
+
+    /// Two levels weighed linearly; one where the level of detail is whole.
+    fn linear(&mut self, texture: &Texture, layers: &Layers<'_>, mask: Mask, to: &mut [Lanes; 4]) {
+        for ((lod, upper), share) in self.lod.iter().zip(&mut self.upper).zip(&mut self.share) {
+            *upper = floor(*lod);
+            *share = lod - *upper;
+        }
+        let mut left = mask;
+        while let Some(first) = lanes_of(left).next() {
+            let upper = self.upper[first];
+            let same = left & gather(|i| self.upper[i] == upper);
+            left &= !same;
+            self.two_levels(texture, upper as usize, layers, same, to);
+        }
+    }
+
+    /// A level, weighed with the next by the share of that.
+    fn two_levels(
+        &mut self,
+        texture: &Texture,
+        upper: usize,
+        layers: &Layers<'_>,
+        mask: Mask,
+        to: &mut [Lanes; 4],
+    ) {
+        let Some(sharp) = texture.levels.get(upper) else { return };
+        let next = texture.levels.get(upper + 1);
+        let blurred = next.filter(|_| mask & gather(|i| self.share[i] != 0.0) != 0);
+        let (x, y, share, [near, far]) = (&self.x, &self.y, &self.share, &mut self.taps);
+        near.find(texture.wrap, sharp, x, y);
+        let Some(blurred) = blurred else {
+            for i in lanes_of(mask) {
+                store(near.texel(layers.texels(sharp, i), i), i, to);
+            }
+            return;
+        };
+        far.find(texture.wrap, blurred, x, y);
+        for i in lanes_of(mask) {
+            let sharp = near.texel(layers.texels(sharp, i), i);
+            let blurred = far.texel(layers.texels(blurred, i), i);
+            store(if share[i] == 0.0 { sharp } else { sharp.lerp(blurred, share[i]) }, i, to);
+        }
+    }
+
+    /// The nearest texel of the nearest level.
+    fn nearest(&self, texture: &Texture, layers: &Layers<'_>, mask: Mask, to: &mut [Lanes; 4]) {
+        for i in lanes_of(mask) {
+            let level = ((self.lod[i] + 0.5).ceil() as usize).max(1) - 1;
+            let Some(level) = texture.levels.get(level) else { continue };
+            let place = |at: f32, size: i32| inside(texture.wrap, small_int(floor(at * size as f32)), size);
+            let (x, y) = (place(self.x[i], level.size.x), place(self.y[i], level.size.y));
+            let at = (y * level.size.x + x) as usize;
+            store(layers.texels(level, i).get(at).copied().unwrap_or(Vec4::ZERO), i, to);
+        }
+    }
+}
+
+/// The texels of all levels and layers, and which layer a lane wants.
+struct Layers<'a> {
+    texels: &'a [Vec4],
+    layer: &'a Lanes,
+}
+
+impl Layers<'_> {
+    /// The texels of a lane's layer of a level, row by row.
+    #[inline(always)]
+    fn texels(&self, level: &Level, lane: usize) -> &[Vec4] {
+        let layer = (self.layer[lane] as i32).clamp(0, level.layers - 1);
+        self.texels.get(level.index(layer)..).unwrap_or(&[])
+    }
+}
+
+impl Taps {
+    /// Finds the texels around places. Rows are told by where they begin.
+    fn find(&mut self, wrap: Wrap, level: &Level, x: &Places, y: &Places) {
+        self.x.find(wrap, level.size.x, x);
+        self.y.find(wrap, level.size.y, y);
+        for row in self.y.low.iter_mut().chain(&mut self.y.high) {
+            *row *= level.size.x;
+        }
+    }
+
+    /// What they come to in a lane.
+    #[inline(always)]
+    fn texel(&self, texels: &[Vec4], i: usize) -> Vec4 {
+        let texel = |x: i32, row: i32| texels.get((row + x) as usize).copied().unwrap_or(Vec4::ZERO);
+        let row = |row: i32| texel(self.x.low[i], row).lerp(texel(self.x.high[i], row), self.x.share[i]);
+        row(self.y.low[i]).lerp(row(self.y.high[i]), self.y.share[i])
+    }
+}
+
+impl Axis {
+    fn find(&mut self, wrap: Wrap, size: i32, places: &Places) {
+        match wrap {
+            Wrap::Repeat => self.each(size, places, |at| wrapped(at, size)),
+            Wrap::Clamp => self.each(size, places, |at| at.clamp(0, size - 1)),
+            Wrap::Mirror => self.each(size, places, |at| mirrored(at, size)),
+        }
+    }
+
+    #[inline(always)]
+    fn each(&mut self, size: i32, places: &Places, inside: impl Fn(i32) -> i32) {
+        let slots = self.low.iter_mut().zip(&mut self.high).zip(&mut self.share);
+        for (((low, high), share), place) in slots.zip(places) {
+            let place = place * size as f32 - 0.5;
+            let first = floor(place);
+            let number = small_int(first);
+            (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
+        }
+    }
+}
+
+/// Coordinates in the first period: exact before they are scaled to texels, and finite.
+fn reduce(wrap: Wrap, lanes: &Lanes, to: &mut Places) {
+    match wrap {
+        Wrap::Repeat => reduce_by(lanes, to, |x| x - floor(x)),
+        Wrap::Mirror => reduce_by(lanes, to, |x| x - 2.0 * floor(x * 0.5)),
+        Wrap::Clamp => reduce_by(lanes, to, |x| x.clamp(-1.0, 2.0)),
+    }
+}
+
+#[inline(always)]
+fn reduce_by(lanes: &Lanes, to: &mut Places, reduce: impl Fn(f32) -> f32) {
+    for (to, bits) in to.iter_mut().zip(lanes) {
+        let reduced = reduce(f32::from_bits(*bits));
+        *to = if reduced.is_finite() { reduced } else { 0.0 };
+    }
+}
+
+/// A texel becomes what a lane has.
+#[inline(always)]
+fn store(texel: Vec4, i: usize, to: &mut [Lanes; 4]) {
+    for (to, component) in to.iter_mut().zip(texel.to_array()) {
+        to[i] = component.to_bits();
+    }
 }
 
 /// A whole number below 2²² as an int: the sum's last bits. `as` would not be done side by side.
 fn small_int(x: f32) -> i32 {
     const BASE: f32 = 12_582_912.0;
     (x + BASE).to_bits().wrapping_sub(BASE.to_bits()) as i32
+}
+
+/// A texel's place inside a level.
+fn inside(wrap: Wrap, at: i32, size: i32) -> i32 {
+    match wrap {
+        Wrap::Repeat => wrapped(at, size),
+        Wrap::Clamp => at.clamp(0, size - 1),
+        Wrap::Mirror => mirrored(at, size),
+    }
 }
 
 /// A texel's place in a picture that repeats; it is less than a period outside.

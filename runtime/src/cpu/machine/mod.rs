@@ -15,6 +15,7 @@ mod step;
 
 use super::mask::{Mask, mask_of};
 use super::plan::{Call, Planned, Register, Step};
+use super::sample::Sampler;
 use super::texture::Texture;
 use memory::Memory;
 use texgraph_compiler::intrinsic::{Lanes, ZERO};
@@ -49,6 +50,7 @@ pub struct Machine {
     vector: Box<[Lanes; 4]>,
     /// ... and for the next accumulators of a fold.
     next: Vec<Lanes>,
+    sampler: Box<Sampler>,
 }
 
 /// A function that is running.
@@ -84,6 +86,7 @@ impl Default for Machine {
             result: Box::new(ZERO),
             vector: Box::new([ZERO; 4]),
             next: Vec::new(),
+            sampler: Box::default(),
         }
     }
 }

@@ -45,8 +45,8 @@ impl Machine {
             Step::Sample { view, at, layer, level, to } => {
                 match texture(*view) {
                     Some(texture) => {
-                        let (at, layer, level) = (at.map(lanes), lanes(*layer), lanes(*level));
-                        texture.sample(at, level, layer, self.mask, &mut self.vector);
+                        let (at, lod) = (at.map(lanes), [lanes(*level), lanes(*layer)]);
+                        self.sampler.sample(texture, at, lod, self.mask, &mut self.vector);
                     }
                     None => *self.vector = [ZERO; 4],
                 }
