@@ -46,7 +46,17 @@ impl Slope {
 
     /// At a place in pixels; the first pixel's centre is (0.5, 0.5).
     pub fn at(&self, x: f64, y: f64) -> [f32; 4] {
-        [0, 1, 2, 3].map(|i| (self.corner[i] + self.right[i] * x + self.down[i] * y) as f32)
+        [0, 1, 2, 3].map(|i| self.component(i, x, y))
+    }
+
+    /// One component of it at a place in pixels.
+    pub fn component(&self, i: usize, x: f64, y: f64) -> f32 {
+        (self.corner[i] + self.right[i] * x + self.down[i] * y) as f32
+    }
+
+    /// Whether a component is the same at all places.
+    pub fn is_constant(&self, i: usize) -> bool {
+        self.right[i] == 0.0 && self.down[i] == 0.0
     }
 
     /// The screen derivative to the right.

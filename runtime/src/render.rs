@@ -59,11 +59,17 @@ impl Request {
     /// # Errors
     /// The request asks for what can't be, or for more than there is memory for.
     pub(crate) fn picture(&self, program: &Program) -> Result<Picture, RenderError> {
+        Ok(Picture { content: self.content(program)?, ..self.blank()? })
+    }
+
+    /// What the floats of the picture mean.
+    ///
+    /// # Errors
+    /// The program has no such output.
+    pub(crate) fn content(&self, program: &Program) -> Result<Content, RenderError> {
         let outputs = &program.manifest.outputs;
-        let output = outputs
-            .get(self.output)
-            .ok_or(RenderError::NoOutput { output: self.output, outputs: outputs.len() })?;
-        Ok(Picture { content: content(output), ..self.blank()? })
+        let missing = RenderError::NoOutput { output: self.output, outputs: outputs.len() };
+        outputs.get(self.output).map(content).ok_or(missing)
     }
 
     /// A blank picture of data.
@@ -71,17 +77,26 @@ impl Request {
     /// # Errors
     /// As for [`Request::picture`].
     pub(crate) fn blank(&self) -> Result<Picture, RenderError> {
+        self.check()?;
+        let count = self.size[0] as usize * self.size[1] as usize;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| RenderError::Memory { size: self.size })?;
+        pixels.resize(count, [0.0; 4]);
+        Ok(Picture { size: self.size, pixels, content: Content::Data })
+    }
+
+    /// Looks at everything but the output.
+    ///
+    /// # Errors
+    /// The request asks for what can't be.
+    pub(crate) fn check(&self) -> Result<(), RenderError> {
         if self.size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
             return Err(RenderError::Size { size: self.size });
         }
         if !self.region.iter().all(|bound| bound.is_finite()) || !self.time.is_finite() {
             return Err(RenderError::NotFinite);
         }
-        let count = self.size[0] as usize * self.size[1] as usize;
-        let mut pixels = Vec::new();
-        pixels.try_reserve_exact(count).map_err(|_| RenderError::Memory { size: self.size })?;
-        pixels.resize(count, [0.0; 4]);
-        Ok(Picture { size: self.size, pixels, content: Content::Data })
+        Ok(())
     }
 }
 

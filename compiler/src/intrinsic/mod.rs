@@ -11,11 +11,14 @@
 
 mod derivative;
 mod expand;
+mod lanes;
 mod table;
 mod value;
 
 pub use derivative::{Tangents, zero};
+pub use lanes::{LANES, Lanes, Vector, ZERO};
 pub use table::*;
+pub use value::floor;
 
 use crate::graph::{Builder, Constant, Scalar, Value};
 
@@ -39,51 +42,36 @@ pub struct Row {
     pub form: Form,
 }
 
-/// The value of an intrinsic. All but `Whole` apply to each component on its own.
+/// The value of an intrinsic, of one value and of [`LANES`] of them by the same function. Made by
+/// `each!` and `whole!`; components are bits, as a [`Constant`] holds them.
 #[derive(Clone, Copy)]
 pub enum Evaluate {
-    /// Of one float.
-    Float1(fn(f32) -> f32),
-    /// Of two floats.
-    Float2(fn(f32, f32) -> f32),
-    /// Of three floats.
-    Float3(fn(f32, f32, f32) -> f32),
-    /// Of one int.
-    Int1(fn(i32) -> i32),
-    /// Of two ints.
-    Int2(fn(i32, i32) -> i32),
-    /// Of three ints.
-    Int3(fn(i32, i32, i32) -> i32),
-    /// A float to an int.
-    FloatToInt(fn(f32) -> i32),
-    /// An int to a float.
-    IntToFloat(fn(i32) -> f32),
-    /// Two floats to a bool.
-    CompareFloat(fn(f32, f32) -> bool),
-    /// Two ints to a bool.
-    CompareInt(fn(i32, i32) -> bool),
-    /// One bool.
-    Bool1(fn(bool) -> bool),
-    /// Two bools.
-    Bool2(fn(bool, bool) -> bool),
-    /// Of whole arguments.
-    Whole(fn(&[Constant]) -> Constant),
+    /// By a function of up to three components, which applies to each on its own.
+    Each {
+        /// What a component of the value is; there are as many as the first argument has. None for
+        /// that of the first argument.
+        scalar: Option<Scalar>,
+        /// Of a component of each argument.
+        one: fn([u32; 3]) -> u32,
+        /// The same in all lanes.
+        all: fn([&Lanes; 3], &mut Lanes),
+    },
+    /// By a function of up to two whole arguments; the first has this width.
+    Whole {
+        /// Of one value.
+        one: fn(usize, [Constant; 2]) -> Constant,
+        /// The same in all lanes.
+        all: fn(usize, [Vector<'_>; 2], &mut [Lanes; 4]),
+    },
 }
 
 impl Evaluate {
-    /// What a component of the value is; as many as the first argument has. None for `Whole`.
+    /// What a component of the value is; as many as the first argument has. None where only an
+    /// evaluation tells.
     pub fn component(&self) -> Option<Scalar> {
         match self {
-            Evaluate::Float1(_) | Evaluate::Float2(_) | Evaluate::Float3(_) | Evaluate::IntToFloat(_) => {
-                Some(Scalar::Float)
-            }
-            Evaluate::Int1(_) | Evaluate::Int2(_) | Evaluate::Int3(_) | Evaluate::FloatToInt(_) => {
-                Some(Scalar::Int)
-            }
-            Evaluate::CompareFloat(_) | Evaluate::CompareInt(_) | Evaluate::Bool1(_) | Evaluate::Bool2(_) => {
-                Some(Scalar::Bool)
-            }
-            Evaluate::Whole(_) => None,
+            Evaluate::Each { scalar, .. } => *scalar,
+            Evaluate::Whole { .. } => None,
         }
     }
 }

@@ -7,34 +7,43 @@ use crate::graph::{Constant, Scalar};
 
 /// Applies a row's value, component by component unless it is `Whole`.
 pub fn evaluate(value: &Evaluate, arguments: &[Constant]) -> Constant {
-    let float = |k: usize, i: usize| arguments.get(k).map_or(0.0, |c| c.float(i));
-    let int = |k: usize, i: usize| arguments.get(k).map_or(0, |c| c.int(i));
-    let bool = |k: usize, i: usize| arguments.get(k).is_some_and(|c| c.bool(i));
-    let width = arguments.first().map_or(1, |c| usize::from(c.width()));
-    let floats =
-        |f: &dyn Fn(usize) -> f32| Constant::new(Scalar::Float, (0..width).map(|i| finite(f(i)).to_bits()));
-    let ints = |f: &dyn Fn(usize) -> i32| Constant::new(Scalar::Int, (0..width).map(|i| f(i) as u32));
-    let bools = |f: &dyn Fn(usize) -> bool| Constant::new(Scalar::Bool, (0..width).map(|i| u32::from(f(i))));
+    let width = arguments.first().map_or(1, |first| usize::from(first.width()));
+    let argument = |k: usize| arguments.get(k).copied().unwrap_or(Constant::zero(Scalar::Float, 1));
     match *value {
-        Evaluate::Float1(f) => floats(&|i| f(float(0, i))),
-        Evaluate::Float2(f) => floats(&|i| f(float(0, i), float(1, i))),
-        Evaluate::Float3(f) => floats(&|i| f(float(0, i), float(1, i), float(2, i))),
-        Evaluate::IntToFloat(f) => floats(&|i| f(int(0, i))),
-        Evaluate::Int1(f) => ints(&|i| f(int(0, i))),
-        Evaluate::Int2(f) => ints(&|i| f(int(0, i), int(1, i))),
-        Evaluate::Int3(f) => ints(&|i| f(int(0, i), int(1, i), int(2, i))),
-        Evaluate::FloatToInt(f) => ints(&|i| f(float(0, i))),
-        Evaluate::CompareFloat(f) => bools(&|i| f(float(0, i), float(1, i))),
-        Evaluate::CompareInt(f) => bools(&|i| f(int(0, i), int(1, i))),
-        Evaluate::Bool1(f) => bools(&|i| f(bool(0, i))),
-        Evaluate::Bool2(f) => bools(&|i| f(bool(0, i), bool(1, i))),
-        Evaluate::Whole(f) => f(arguments),
+        Evaluate::Each { scalar, one, all: _ } => {
+            let arguments = [0, 1, 2].map(argument);
+            let words = |i: usize| arguments.map(|argument| argument.int(i) as u32);
+            let scalar = scalar.unwrap_or(arguments[0].scalar());
+            Constant::new(scalar, (0..width).map(|i| one(words(i))))
+        }
+        Evaluate::Whole { one, all: _ } => one(width, [0, 1].map(argument)),
     }
 }
 
 /// What is worked out here is a number: NaN is 0, what overflows saturates.
 pub fn finite(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(-f32::MAX, f32::MAX) }
+}
+
+/// Floats from here on have no fraction.
+const NO_FRACTION: f32 = 8_388_608.0;
+
+/// The nearest integer, halves to the even one: a sum this large has no bits left for a fraction.
+/// As `libm::rintf`, without branches.
+pub fn round(x: f32) -> f32 {
+    let rounded = (x.abs() + NO_FRACTION) - NO_FRACTION;
+    if x.abs() < NO_FRACTION { rounded.copysign(x) } else { x }
+}
+
+/// The greatest integer that is not greater. As `libm::floorf`, without branches.
+pub fn floor(x: f32) -> f32 {
+    let near = round(x);
+    near - if near > x { 1.0 } else { 0.0 }
+}
+
+/// The least integer that is not less. As `libm::ceilf`, without branches.
+pub fn ceil(x: f32) -> f32 {
+    -floor(-x)
 }
 
 /// Smaller divisors, bases and arguments of logarithms count as 0: graphics hardware may take what
@@ -54,7 +63,7 @@ pub fn divide(x: f32, y: f32) -> f32 {
 
 /// `x − y·floor(x / y)`, 0 where `y` counts as 0.
 pub fn remainder(x: f32, y: f32) -> f32 {
-    if y.abs() < LEAST { 0.0 } else { x - finite(y * libm::floorf(finite(x / y))) }
+    if y.abs() < LEAST { 0.0 } else { x - finite(y * floor(finite(x / y))) }
 }
 
 /// The quotient rounded down; 0 for a divisor of 0, and `MIN / -1` is `MIN`.
@@ -78,7 +87,19 @@ pub fn remainder_int(x: i32, y: i32) -> i32 {
 
 /// Truncates and saturates; NaN is 0.
 pub fn to_int(x: f32) -> i32 {
-    x as i32
+    whole_to_int(floor(x.abs()).copysign(x))
+}
+
+/// Rounds down to an int and saturates; NaN is 0.
+pub fn floor_int(x: f32) -> i32 {
+    whole_to_int(floor(x))
+}
+
+/// As `x as i32` for a whole number, without branches: the sum's last 32 bits are the int.
+fn whole_to_int(x: f32) -> i32 {
+    let number = if x.is_nan() { 0.0 } else { x };
+    let held = f64::from(number).max(f64::from(i32::MIN)).min(f64::from(i32::MAX));
+    (held + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
 /// x to the power of y; 0 where that is not a real number.
@@ -121,94 +142,72 @@ pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
 }
 
 /// The sum of the products of the components.
-pub fn dot(arguments: &[Constant]) -> Constant {
-    Constant::floats(&[finite(dot_of(arguments))])
-}
-
-fn dot_of(arguments: &[Constant]) -> f32 {
-    match arguments {
-        [a, b] => (0..usize::from(a.width())).map(|i| a.float(i) * b.float(i)).fold(0.0, |sum, x| sum + x),
-        _ => 0.0,
-    }
+pub fn dot<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
+    a.into_iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }
 
 /// Euclidean length.
-pub fn length(arguments: &[Constant]) -> Constant {
-    let Some(v) = arguments.first() else { return Constant::floats(&[0.0]) };
-    let length = if v.width() == 1 { v.float(0).abs() } else { libm::sqrtf(dot_of(&[*v, *v])) };
-    Constant::floats(&[finite(length)])
+pub fn length<const N: usize>(v: [f32; N]) -> f32 {
+    finite(if N == 1 { v[0].abs() } else { dot(v, v).sqrt() })
 }
 
 /// The same direction with length 1; 0 for 0.
-pub fn normalize(arguments: &[Constant]) -> Constant {
-    let Some(v) = arguments.first() else { return Constant::floats(&[0.0]) };
-    let length = length(arguments).float(0);
-    Constant::new(
-        Scalar::Float,
-        (0..usize::from(v.width())).map(|i| finite(divide(v.float(i), length)).to_bits()),
-    )
+pub fn normalize<const N: usize>(v: [f32; N]) -> [f32; N] {
+    let length = length(v);
+    v.map(|x| divide(x, length))
+}
+
+/// Euclidean distance.
+pub fn distance<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
+    length::<N>(std::array::from_fn(|i| a[i] - b[i]))
 }
 
 /// The vector at right angles to both.
-pub fn cross(arguments: &[Constant]) -> Constant {
-    let [a, b] = arguments else { return Constant::zero(Scalar::Float, 3) };
-    let minor = |i: usize, j: usize| finite(a.float(i) * b.float(j) - a.float(j) * b.float(i));
-    Constant::floats(&[minor(1, 2), minor(2, 0), minor(0, 1)])
+pub fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 /// Whether two vectors agree in every component.
-pub fn equal(arguments: &[Constant]) -> Constant {
-    let equal = match arguments {
-        [a, b] => (0..usize::from(a.width())).all(|i| match a.scalar() {
-            Scalar::Float => a.float(i) == b.float(i),
-            Scalar::Int | Scalar::Bool => a.int(i) == b.int(i),
-        }),
-        _ => true,
-    };
-    Constant::bools(&[equal])
+pub fn equal<T: PartialEq, const N: usize>(a: [T; N], b: [T; N]) -> bool {
+    a.into_iter().zip(b).fold(true, |equal, (a, b)| equal & (a == b))
 }
 
 /// The negation of [`equal`].
-pub fn not_equal(arguments: &[Constant]) -> Constant {
-    Constant::bools(&[!equal(arguments).bool(0)])
+pub fn not_equal<T: PartialEq, const N: usize>(a: [T; N], b: [T; N]) -> bool {
+    !equal(a, b)
 }
 
 /// Whether all components hold.
-pub fn all(arguments: &[Constant]) -> Constant {
-    Constant::bools(&[arguments.iter().all(|c| (0..usize::from(c.width())).all(|i| c.bool(i)))])
+pub fn all<const N: usize>(components: [bool; N]) -> bool {
+    components.into_iter().fold(true, |all, holds| all & holds)
 }
 
-/// Component by component the second where the first holds, else the third.
-pub fn choose(arguments: &[Constant]) -> Constant {
-    let [condition, yes, no] = arguments else { return Constant::floats(&[0.0]) };
-    let pick = |i: usize| if condition.bool(i) { yes.bits()[i] } else { no.bits()[i] };
-    Constant::new(yes.scalar(), (0..usize::from(yes.width())).map(pick))
+/// The first where the condition holds, else the second.
+pub fn choose<T>(condition: bool, yes: T, no: T) -> T {
+    if condition { yes } else { no }
 }
 
-/// Component by component of one vector, the index clamped.
-pub fn component(arguments: &[Constant]) -> Constant {
-    let [v, index] = arguments else { return Constant::floats(&[0.0]) };
-    let last = i32::from(v.width()) - 1;
-    v.component(index.int(0).clamp(0, last) as usize)
+/// One component of a vector of any type, the index clamped.
+pub fn component<T: Copy, const N: usize>(v: [T; N], index: i32) -> T {
+    v[(index.max(0) as usize).min(N - 1)]
 }
 
 /// `hash(i, seed)`: pcg4d of (i padded with 0, seed); for four components the seed is xored into
 /// the last.
-pub fn hash(arguments: &[Constant]) -> Constant {
-    let [i, seed] = arguments else { return Constant::zero(Scalar::Float, 4) };
-    let last = if i.width() == 4 { i.int(3) ^ seed.int(0) } else { seed.int(0) };
-    unit(pcg4d([i.int(0) as u32, i.int(1) as u32, i.int(2) as u32, last as u32]))
+pub fn hash<const N: usize>(i: [i32; N], seed: i32) -> [f32; 4] {
+    let word = |c: usize| i.get(c).map_or(0, |word| *word as u32);
+    unit(pcg4d([word(0), word(1), word(2), word(3) ^ seed as u32]))
 }
 
 /// The hash of four ints.
-pub fn hash4(arguments: &[Constant]) -> Constant {
-    let Some(v) = arguments.first() else { return Constant::zero(Scalar::Float, 4) };
-    unit(pcg4d([0, 1, 2, 3].map(|i| v.int(i) as u32)))
+pub fn hash4(words: [i32; 4]) -> [f32; 4] {
+    unit(pcg4d(words.map(|word| word as u32)))
 }
 
-/// The upper 24 bits of each as a float in [0, 1).
-fn unit(words: [u32; 4]) -> Constant {
-    Constant::floats(&words.map(|u| (u >> 8) as f32 * (1.0 / 16_777_216.0)))
+/// The upper 24 bits of each as a float in [0, 1). They fit an int, whose conversion is cheaper.
+fn unit(words: [u32; 4]) -> [f32; 4] {
+    words.map(|u| (u >> 8) as i32 as f32 * (1.0 / 16_777_216.0))
 }
 
 /// Four words to four words, each depending on all (Jarzynski & Olano 2020).
@@ -232,9 +231,39 @@ pub fn bits(x: i32, first: i32, count: i32) -> i32 {
     ((x as u32 >> first) & mask) as i32
 }
 
-/// Euclidean distance.
-pub fn distance(arguments: &[Constant]) -> Constant {
-    let [a, b] = arguments else { return Constant::floats(&[0.0]) };
-    let offset = (0..usize::from(a.width())).map(|i| (a.float(i) - b.float(i)).to_bits());
-    length(&[Constant::new(Scalar::Float, offset)])
+#[cfg(test)]
+mod tests {
+    use super::{ceil, floor, floor_int, round, to_int};
+
+    #[test]
+    fn rounding_is_that_of_libm() {
+        let edges = [
+            0.0,
+            0.5,
+            1.0,
+            1.5,
+            2.5,
+            4_194_303.5,
+            4_194_304.5,
+            8_388_607.5,
+            8_388_608.0,
+            2_147_483_648.0,
+            1e30,
+        ];
+        let near = edges.into_iter().flat_map(|x: f32| {
+            (-2..=2).flat_map(move |step| {
+                let x = f32::from_bits(x.to_bits().wrapping_add_signed(step));
+                [x, -x]
+            })
+        });
+        let spread = (0..1 << 22).map(|i: u32| f32::from_bits(i.wrapping_mul(1021)));
+        for x in near.chain(spread) {
+            assert_eq!([to_int(x), floor_int(x)], [x as i32, libm::floorf(x) as i32], "{x:?}");
+            if x.is_nan() {
+                continue;
+            }
+            let wanted = [libm::floorf(x), libm::ceilf(x), libm::rintf(x)].map(f32::to_bits);
+            assert_eq!([floor(x), ceil(x), round(x)].map(f32::to_bits), wanted, "{x:?}");
+        }
+    }
 }

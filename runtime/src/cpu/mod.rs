@@ -1,33 +1,37 @@
-//! The CPU renderer: evaluates a program's graph at every pixel.
+//! The CPU renderer: evaluates a program's graph for batches of pixels.
 //!
 //! The twin of the GPU: it needs no driver, defines what a program is worth, and is what the GPU's
-//! pictures are compared with. A plan is made once for a picture: which operations the wanted
-//! output needs, and what those are worth that no pixel changes. A machine then runs the plan
-//! for a pixel; rows are spread over all cores. A version that runs batches of pixels can take the
-//! place of the machine alone.
+//! pictures are compared with. A plan is made once for a picture: the graph without what the wanted
+//! output does not need becomes steps over registers, each one component of a value in 64 lanes;
+//! what no pixel changes is computed while planning. A machine then runs the plan for 64 pixels at
+//! a time: every step is a loop over lanes by the function that defines the row, so a pixel has the
+//! same bits as a folded constant, whatever batch it is in. Batches are spread over all cores.
+//!
+//! ```text
+//! graph ──remove_dead──▶ planner ──▶ steps ──registers──▶ plan ──machine──▶ pixels
+//! ```
 
-mod demand;
-mod evaluate;
+mod draw;
+mod inputs;
 mod machine;
+mod mask;
 mod plan;
 mod planner;
+mod registers;
 mod sample;
 mod texture;
 
 use crate::bake::{self, Bake};
 use crate::pass::{self, Pass};
-use crate::picture::Picture;
+use crate::picture::{Content, Picture};
 use crate::progress::Progress;
 use crate::render::{RenderError, Request};
 use crate::resource::Tables;
 use crate::settings::Settings;
-use machine::Machine;
-use plan::{Plan, Source};
-use rayon::iter::{IndexedParallelIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use draw::draw;
 use texgraph_compiler::Program;
-use texgraph_compiler::graph::{Constant, Scalar};
+use texgraph_compiler::graph::Graph;
+use texgraph_compiler::pass::remove_dead;
 use texture::Texture;
 
 /// Renders a program's output. `progress` hears shares from 0 to 1, from any thread.
@@ -48,6 +52,8 @@ pub fn render(
 pub struct Scene<'a> {
     program: &'a Program,
     pass: Pass<'a>,
+    /// Of the pass, what the output needs.
+    graph: Graph,
     output: usize,
     /// Of each view of the graph.
     textures: Vec<Texture>,
@@ -64,7 +70,8 @@ impl<'a> Scene<'a> {
         let pass = pass::texture(program)?;
         let bakes = bake::all(program, tables)?;
         let textures = texture::decode_all(&pass, &bakes, tables)?;
-        Ok(Scene { program, pass, output, textures, bakes, drawn: 0 })
+        let graph = only(&pass.code.graph, output);
+        Ok(Scene { program, pass, graph, output, textures, bakes, drawn: 0 })
     }
 
     /// Renders a picture of the output that the scene was made for; the request's own is not looked
@@ -78,7 +85,8 @@ impl<'a> Scene<'a> {
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<Picture, RenderError> {
         let request = Request { output: self.output, ..request.clone() };
-        let mut picture = request.picture(self.program)?;
+        let content = request.content(self.program)?;
+        request.check()?;
         let stale = self.bakes.iter().filter(|bake| bake.is_stale(&request.settings)).map(Bake::size);
         let mut progress = Progress::new(progress, stale.chain([request.size]));
         for n in 0..self.bakes.len() {
@@ -87,8 +95,8 @@ impl<'a> Scene<'a> {
             }
         }
         let progress = progress.next(request.size);
-        draw(&self.pass, &self.textures, &request, &mut picture, &progress)?;
-        Ok(picture)
+        let pixels = draw(&self.pass, &self.graph, &self.textures, &request, &progress)?;
+        Ok(Picture { size: request.size, pixels, content })
     }
 
     /// How many bakes have been drawn for all pictures so far.
@@ -117,12 +125,12 @@ impl<'a> Scene<'a> {
     ) -> Result<Vec<u8>, RenderError> {
         let bake = &mut self.bakes[n];
         let request = bake.request(settings);
-        let drawn = request.blank().and_then(|mut picture| {
-            let progress = progress.next(request.size);
-            draw(&bake.pass, &self.textures, &request, &mut picture, &progress)?;
-            Ok(picture)
+        let drawn = request.check().and_then(|()| {
+            let graph = only(&bake.pass.code.graph, request.output);
+            draw(&bake.pass, &graph, &self.textures, &request, &progress.next(request.size))
         });
-        let texels = bake.texels(&drawn.map_err(|error| bake.failed(error))?);
+        let pixels = drawn.map_err(|error| bake.failed(error))?;
+        let texels = bake.texels(&Picture { size: request.size, pixels, content: Content::Data });
         texture::replace(&mut self.textures, bake, &texels);
         bake.keep(settings);
         self.drawn += 1;
@@ -130,56 +138,11 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Draws one output of a pass into a blank picture.
-fn draw(
-    pass: &Pass<'_>,
-    textures: &[Texture],
-    request: &Request,
-    picture: &mut Picture,
-    progress: &(dyn Fn(f32) + Sync),
-) -> Result<(), RenderError> {
-    let plan = Plan::new(pass, request, textures)?;
-    let [width, height] = request.size.map(|side| side as usize);
-    let done = AtomicUsize::new(0);
-    let rows = picture.pixels.par_chunks_mut(width).enumerate();
-    rows.for_each_init(
-        || Machine::new(&plan.functions, textures),
-        |machine, (y, row)| {
-            for (x, pixel) in row.iter_mut().enumerate() {
-                *pixel = shade(&plan, machine, x, y);
-            }
-            progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f32 / height as f32);
-        },
-    );
-    Ok(())
-}
-
-/// One pixel's output.
-fn shade(plan: &Plan, machine: &mut Machine<'_>, x: usize, y: usize) -> [f32; 4] {
-    let (x, y) = (x as f64 + 0.5, y as f64 + 0.5);
-    let inputs = plan.inputs.iter().map(|(source, width)| {
-        let components = match source {
-            Source::Value(slope) => slope.at(x, y),
-            Source::Right(slope) => slope.right(),
-            Source::Down(slope) => slope.down(),
-        };
-        Constant::floats(&components[..usize::from(*width)])
-    });
-    let outputs = machine.run(plan.entry, inputs);
-    outputs.get(plan.output).map_or([0.0; 4], widen)
-}
-
-/// An output as four floats, as the manifest's `Output` says.
-fn widen(value: &Constant) -> [f32; 4] {
-    let component = |i: usize| match value.scalar() {
-        Scalar::Float => value.float(i),
-        Scalar::Int => value.int(i) as f32,
-        Scalar::Bool => f32::from(u8::from(value.bool(i))),
-    };
-    match value.width() {
-        1 => [component(0), component(0), component(0), 1.0],
-        2 => [component(0), component(1), 0.0, 1.0],
-        3 => [component(0), component(1), component(2), 1.0],
-        _ => [component(0), component(1), component(2), component(3)],
+/// The graph of a pass with only one of its outputs, and what that needs.
+fn only(graph: &Graph, output: usize) -> Graph {
+    let mut graph = graph.clone();
+    if let Some(entry) = graph.functions.last_mut() {
+        entry.outputs = entry.outputs.get(output).cloned().into_iter().collect();
     }
+    remove_dead::run(graph)
 }

@@ -1,5 +1,6 @@
 //! Textures of the CPU renderer: tables with their texels decoded.
 
+use super::mask::{Mask, lanes_of};
 use crate::bake::Bake;
 use crate::pass::Pass;
 use crate::render::RenderError;
@@ -8,7 +9,8 @@ use glam::{IVec2, IVec4, Vec4};
 use half::f16;
 use rayon::iter::ParallelIterator;
 use rayon::slice::ParallelSlice;
-use texgraph_compiler::graph::{Constant, ResourceView};
+use texgraph_compiler::graph::ResourceView;
+use texgraph_compiler::intrinsic::Lanes;
 use texgraph_compiler::manifest::{self, Filter, Format, Table, Wrap};
 
 /// A texture with its sampler.
@@ -19,7 +21,8 @@ pub struct Texture {
     pub wrap: Wrap,
     /// How texels are weighed.
     pub filter: Filter,
-    texels: Texels,
+    /// The texels of all levels.
+    pub texels: Texels,
 }
 
 /// One level.
@@ -33,8 +36,11 @@ pub struct Level {
     start: usize,
 }
 
-enum Texels {
+/// Four components each, all levels one after the other.
+pub enum Texels {
+    /// Ready to be weighed.
     Float(Vec<Vec4>),
+    /// Never sampled.
     Int(Vec<IVec4>),
 }
 
@@ -53,33 +59,32 @@ impl Texture {
         self.levels[0].size
     }
 
-    /// A texel of a level; place and layer are inside it.
-    pub fn texel(&self, level: &Level, at: IVec2, layer: i32) -> Vec4 {
-        match &self.texels {
-            Texels::Float(texels) => texels.get(level.index(at, layer)).copied().unwrap_or(Vec4::ZERO),
-            Texels::Int(_) => Vec4::ZERO,
-        }
-    }
-
-    /// A texel of level 0, four floats or four ints; a place outside is moved inside.
-    pub fn fetch(&self, at: IVec2, layer: i32) -> Constant {
+    /// Texels of level 0, four floats or four ints; a place outside is moved inside.
+    pub fn fetch(&self, [x, y]: [&Lanes; 2], layer: &Lanes, mask: Mask, to: &mut [Lanes; 4]) {
         let level = &self.levels[0];
-        let index = level.index(at.clamp(IVec2::ZERO, level.size - 1), layer.clamp(0, level.layers - 1));
-        match &self.texels {
-            Texels::Float(texels) => {
-                Constant::floats(&texels.get(index).copied().unwrap_or(Vec4::ZERO).to_array())
-            }
-            Texels::Int(texels) => {
-                Constant::ints(&texels.get(index).copied().unwrap_or(IVec4::ZERO).to_array())
+        for i in lanes_of(mask) {
+            let at = IVec2::new(x[i] as i32, y[i] as i32).clamp(IVec2::ZERO, level.size - 1);
+            let index = level.index((layer[i] as i32).clamp(0, level.layers - 1))
+                + (at.y * level.size.x + at.x) as usize;
+            let texel = match &self.texels {
+                Texels::Float(texels) => {
+                    texels.get(index).copied().unwrap_or(Vec4::ZERO).to_array().map(f32::to_bits)
+                }
+                Texels::Int(texels) => {
+                    texels.get(index).copied().unwrap_or(IVec4::ZERO).to_array().map(|x| x as u32)
+                }
+            };
+            for (to, component) in to.iter_mut().zip(texel) {
+                to[i] = component;
             }
         }
     }
 }
 
 impl Level {
-    fn index(&self, at: IVec2, layer: i32) -> usize {
-        let row = layer as usize * self.size.y as usize + at.y as usize;
-        self.start + row * self.size.x as usize + at.x as usize
+    /// Where a layer's texels begin, row by row.
+    pub fn index(&self, layer: i32) -> usize {
+        self.start + layer as usize * (self.size.y * self.size.x) as usize
     }
 }
 

@@ -1,0 +1,45 @@
+//! The inputs of a texture, for the pixels of a batch.
+
+use crate::flat::Slope;
+use texgraph_compiler::intrinsic::{LANES, Lanes};
+
+/// One component of an input that changes from pixel to pixel.
+#[derive(Clone, Copy)]
+pub struct Source {
+    /// The input.
+    pub slope: Slope,
+    /// Which of its components.
+    pub component: usize,
+}
+
+/// The places of a batch's pixels, at their centres.
+pub struct Places {
+    x: [f64; LANES],
+    y: [f64; LANES],
+}
+
+impl Places {
+    /// Of the pixels of a picture from one on, row by row.
+    pub fn from(first: usize, width: usize) -> Places {
+        let mut places = Places { x: [0.0; LANES], y: [0.0; LANES] };
+        let (mut column, mut row, mut from) = (first % width, first / width, 0);
+        while from < LANES {
+            let to = LANES.min(from + width - column);
+            for (x, at) in places.x[from..to].iter_mut().zip(column as u32..) {
+                *x = f64::from(at) + 0.5;
+            }
+            places.y[from..to].fill(row as f64 + 0.5);
+            (column, row, from) = (0, row + 1, to);
+        }
+        places
+    }
+}
+
+impl Source {
+    /// What it is at some places.
+    pub fn fill(&self, places: &Places, lanes: &mut Lanes) {
+        for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
+            *to = self.slope.component(self.component, *x, *y).to_bits();
+        }
+    }
+}
