@@ -53,6 +53,14 @@ pub struct Kind {
     pub make: fn(&Arguments) -> Result<Made, Diagnostic>,
 }
 
+impl Kind {
+    /// The view that a resource of this kind stands for.
+    pub fn stands_for(&self) -> Option<View> {
+        let field = self.fields.iter().find(|field| Some(field.name) == self.view)?;
+        field.kind.view()
+    }
+}
+
 /// A field of a kind.
 pub struct Field {
     /// Its name.
@@ -71,6 +79,8 @@ pub enum FieldKind {
     Row,
     /// A number known from the arguments.
     Constant,
+    /// A colour that is read: the texel of the first row of a view, at a constant; both by name.
+    Texel(&'static str, &'static str),
 }
 
 impl FieldKind {
@@ -79,7 +89,7 @@ impl FieldKind {
         match self {
             FieldKind::View(view) => Some(view),
             FieldKind::Row => Some(SHARED),
-            FieldKind::Constant => None,
+            FieldKind::Constant | FieldKind::Texel(..) => None,
         }
     }
 }
@@ -221,7 +231,10 @@ pub static KINDS: &[Kind] = &[
         gives: None,
         fields: &[
             Field { name: "layers", kind: FieldKind::View(LAYERS) },
+            Field { name: "means", kind: FieldKind::View(PIXELS) },
+            Field { name: "average", kind: FieldKind::Texel("means", "count") },
             Field { name: "count", kind: FieldKind::Constant },
+            Field { name: "linear", kind: FieldKind::Constant },
         ],
         view: None,
         make: make_patterns,
@@ -334,7 +347,10 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
     }
     Ok(Made {
         recipe: Recipe::Patterns { paths, grid: [columns as u32, rows as u32], encoding: a.encoding() },
-        constants: vec![("count", Constant::ints(&[count as i32]))],
+        constants: vec![
+            ("count", Constant::ints(&[count as i32])),
+            ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
+        ],
         sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: a.filter() }),
     })
 }

@@ -7,7 +7,7 @@ use super::view::view_of;
 use super::wire::{ArgumentKey, ImportedNodes, Key, Wire};
 use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, arguments as sentences, names, nodes};
-use crate::graph::{Constant, FunctionId, Operation, Value};
+use crate::graph::{Constant, FunctionId, Operation, Texel, Type, Value, View};
 use crate::library::{Callable, Library};
 use crate::resource::KINDS;
 use smallvec::SmallVec;
@@ -104,11 +104,14 @@ impl<'a> Checker<'a> {
         let name = &call.name.text;
         let at = self.place(f, call.name.span);
         let found = types::describe(&base.wire, |v| f.builder.ty(v));
-        let views: Vec<String> =
-            KINDS.iter().filter(|kind| kind.view.is_some()).map(|kind| format!("`{}`", kind.name)).collect();
+        let has_it = |view: View| name == "texel" || view.texel == Texel::Sampled;
+        let kinds = KINDS.iter().filter(|kind| kind.stands_for().is_some_and(has_it));
+        let views: Vec<String> = kinds.map(|kind| format!("`{}`", kind.name)).collect();
         let mut error = sentences::bad_receiver(at, name, &found, &views);
         if let Wire::Resource(resource) = &base.wire
-            && let Some((field, _)) = resource.views.first()
+            && let Some((field, view)) = resource.views.first()
+            && let Type::View(view) = f.builder.ty(*view)
+            && has_it(view)
         {
             error = error.help(format!("it has a view of its own: `.{field}.{name}(…)`"));
         }

@@ -75,7 +75,7 @@ impl<'a> Checker<'a> {
                         constants.push(("row", row));
                         views.push(self.shared_view());
                     }
-                    FieldKind::Constant => {}
+                    FieldKind::Constant | FieldKind::Texel(..) => {}
                 }
             }
             self.resource_wires.push(ResourceFields { kind, views, constants });
@@ -142,10 +142,23 @@ impl<'a> Checker<'a> {
         if let Some((_, view)) = resource.views.iter().find(|(field, _)| *field == name) {
             return Some(Wire::View(*view));
         }
+        if let Some(texel) = texel_field(f, resource, name) {
+            return Some(texel);
+        }
         let stands_for = KINDS[resource.kind].view?;
         let (_, view) = resource.views.iter().find(|(field, _)| *field == stands_for)?;
         view_field(f, *view, name)
     }
+}
+
+/// A field that is a texel of another field.
+fn texel_field(f: &mut Frame<'_>, resource: &ResourceWire, name: &str) -> Option<Wire> {
+    let field = KINDS[resource.kind].fields.iter().find(|field| field.name == name)?;
+    let FieldKind::Texel(view, at) = field.kind else { return None };
+    let (_, view) = resource.views.iter().find(|(known, _)| *known == view)?;
+    let (_, at) = resource.constants.iter().find(|(known, _)| *known == at)?;
+    let index = f.builder.constant(Constant::ints(&[at.int(0), 0]));
+    Some(Wire::Value(f.builder.texel(*view, index, None)))
 }
 
 /// A field of a view: its size in texels.

@@ -2,11 +2,13 @@
 
 use super::wire::Wire;
 use super::{Checker, Frame, types};
-use crate::diagnostic::{Place, types as errors};
+use crate::diagnostic::{Place, arguments, types as errors};
 use crate::graph::{Constant, Scalar, Type, Value};
 use crate::intrinsic::{Intrinsic, NEGATE, NEGATE_INT, NOT};
 use crate::library::Callable;
-use texgraph_grammar::syntax::{BinaryOperator, ChainLink, Expr, ExprKind, Span, UnaryOperator};
+use texgraph_grammar::syntax::{
+    BinaryOperator, ChainLink, Expr, ExprKind, Name, Span, TypeKind, UnaryOperator,
+};
 
 /// A row of the intrinsic table, and the scalar that it takes.
 pub type Overload = (Intrinsic, Scalar);
@@ -65,6 +67,11 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn chain(&mut self, f: &mut Frame<'a>, first: &'a Expr, links: &'a [ChainLink]) -> Wire {
+        if let [link] = links
+            && let Some((input, word, words)) = chosen(f, first)
+        {
+            return self.compare_choice(f, input, &word, words, link);
+        }
         let start = self.place(f, first.span);
         let mut left = self.operand(f, first);
         let mut place = start;
@@ -82,6 +89,34 @@ impl<'a> Checker<'a> {
             place = whole;
         }
         left
+    }
+
+    /// `edges == wrap`: whether that word was chosen, which is known in each specialisation.
+    fn compare_choice(
+        &mut self,
+        f: &mut Frame<'a>,
+        input: &str,
+        word: &str,
+        words: &[Name],
+        link: &ChainLink,
+    ) -> Wire {
+        let place = self.place(f, link.operand.span);
+        let holds_if_same = match link.operator {
+            BinaryOperator::Equal => true,
+            BinaryOperator::NotEqual => false,
+            _ => return self.report(f, errors::mismatch(place, None, "`==` or `!=`", "another operator")),
+        };
+        match &link.operand.kind {
+            ExprKind::Name(other) if words.iter().any(|known| known.text == *other) => {
+                let holds = (word == other.as_str()) == holds_if_same;
+                Wire::Value(f.builder.constant(Constant::bools(&[holds])))
+            }
+            other => {
+                let written = if let ExprKind::Name(name) = other { name.as_str() } else { "" };
+                let words: Vec<String> = words.iter().map(|known| known.text.to_string()).collect();
+                self.report(f, arguments::unknown_choice(place, input, &words, written))
+            }
+        }
     }
 
     /// An operand: a value or a matrix; anything else is reported.
@@ -168,5 +203,16 @@ impl<'a> Checker<'a> {
             .collect();
         accepted.dedup();
         accepted
+    }
+}
+
+/// An input of the node that is a choice: its name, the word that was chosen, and all its words.
+fn chosen<'a>(f: &mut Frame<'a>, operand: &'a Expr) -> Option<(&'a str, String, &'a [Name])> {
+    let ExprKind::Name(name) = &operand.kind else { return None };
+    let Some(Wire::Word(word, _)) = f.lookup(name) else { return None };
+    let input = f.node?.inputs.iter().find(|input| input.name.text == *name)?;
+    match &input.ty.kind {
+        TypeKind::Choice(words) => Some((name, word, words)),
+        _ => None,
     }
 }

@@ -5,7 +5,8 @@ use super::types;
 use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, types as errors};
-use crate::graph::{Axis, Level, Operation, Scalar, Type, Value};
+use crate::graph::{Axis, Builder, Constant, Level, Operation, Scalar, Type, Value};
+use crate::intrinsic::{DOT, LOG2, MAXIMUM, MULTIPLY};
 use crate::resource::KINDS;
 use texgraph_grammar::syntax::Call;
 
@@ -25,7 +26,7 @@ impl<'a> Checker<'a> {
         let inputs: &[&str] = match name {
             "sample" if sampled => &["at", "layer", "lod", "gradient"],
             "texel" => &["i", "layer"],
-            "level" if sampled => return Some(self.not_yet(f, place, "level")),
+            "level" if sampled => &["at"],
             _ => return None,
         };
         let mut slots: [Option<(Wire, Place)>; 4] = [None, None, None, None];
@@ -49,7 +50,7 @@ impl<'a> Checker<'a> {
         if slots.iter().flatten().any(|(wire, _)| matches!(wire, Wire::Unknown)) {
             return Some(Wire::Unknown);
         }
-        let scalar = if name == "sample" { Scalar::Float } else { Scalar::Int };
+        let scalar = if name == "texel" { Scalar::Int } else { Scalar::Float };
         let Some((at, at_place)) = slots[0].take() else {
             let wanted = types::name(Type::Vector(scalar, ty.coordinates()));
             return Some(self.report(f, sentences::missing_argument(place, name, inputs[0], &wanted)));
@@ -57,6 +58,10 @@ impl<'a> Checker<'a> {
         let Some(at) = self.coordinate(f, &at, scalar, ty.coordinates(), at_place) else {
             return Some(Wire::Unknown);
         };
+        if name == "level" {
+            f.builder.set_place(place);
+            return Some(Wire::Value(level_of_detail(&mut f.builder, view, at)));
+        }
         let Ok(layer) = self.layer(f, ty, slots[1].take(), name, place) else { return Some(Wire::Unknown) };
         f.builder.set_place(place);
         if name == "texel" {
@@ -142,6 +147,24 @@ impl<'a> Checker<'a> {
         let y = f.builder.push(Operation::Derivative(value, Axis::Y), ty);
         Some(Level::Gradient(x, y))
     }
+}
+
+/// The level of detail of a coordinate: log2 of the longer of its two derivatives in texels.
+fn level_of_detail(builder: &mut Builder, view: Value, at: Value) -> Value {
+    let (ty, size) = (builder.ty(at), builder.size(view));
+    let size = builder.to_float(size);
+    let [x, y] = [Axis::X, Axis::Y].map(|axis| {
+        let derivative = builder.push(Operation::Derivative(at, axis), ty);
+        let texels = builder.builtin(MULTIPLY, &[derivative, size]);
+        builder.builtin(DOT, &[texels, texels])
+    });
+    let longer = builder.builtin(MAXIMUM, &[x, y]);
+    // The logarithm of 0 is 0; nothing is below this square.
+    let least = builder.constant(Constant::floats(&[f32::MIN_POSITIVE]));
+    let longer = builder.builtin(MAXIMUM, &[longer, least]);
+    let logarithm = builder.builtin(LOG2, &[longer]);
+    let half = builder.constant(Constant::floats(&[0.5]));
+    builder.builtin(MULTIPLY, &[logarithm, half])
 }
 
 /// The view that a wire is, or stands for.

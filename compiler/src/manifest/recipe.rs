@@ -29,7 +29,8 @@ pub enum Recipe {
         /// How its numbers are read.
         encoding: Encoding,
     },
-    /// Interchangeable tiles, one layer each. Field `layers`.
+    /// Interchangeable tiles, one layer each: field `layers`. Field `means`: the mean of each, a texel
+    /// each in one row, and last that of all.
     Patterns {
         /// Picture files: one with `grid` cells, or one per pattern.
         paths: Vec<String>,

@@ -1,5 +1,5 @@
-//! `patterns`: interchangeable pictures, one layer each, with a mip chain of its own. Field
-//! `layers`.
+//! `patterns`: interchangeable pictures, one layer each, with a mip chain of its own: field
+//! `layers`. Field `means` holds the mean of each, a texel each, and last that of all.
 //!
 //! Layers are what keeps a pattern's filter from reading its neighbour: the sub-textures that
 //! Lefebvre & Neyret 2003, §5.2, ask hardware for. They come from the cells of one picture, row by
@@ -10,9 +10,11 @@ use super::encoding::{self, Reader};
 use super::pyramid;
 use super::table::{self, Made};
 use crate::project::Project;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use glam::{DVec4, Vec4};
+use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use std::ops::Add;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
-use texgraph_compiler::manifest::Encoding;
+use texgraph_compiler::manifest::{Encoding, Format, Table};
 
 /// Makes the texture: of one picture cut by `grid` (columns, rows), or of several pictures.
 ///
@@ -41,11 +43,32 @@ pub fn make(
     let pictures = all(&files, PictureFile::decode)?;
     let readers: Vec<Reader<'_>> = pictures.iter().map(|picture| Reader::new(picture, encoding)).collect();
     let cells = grid[0] * grid[1];
-    Ok(vec![pyramid::build("layers", format, cell, count as u32, |layer, x, y| {
+    let texel = |layer: u32, x: u32, y: u32| {
         let (picture, within) = (layer / cells, layer % cells);
         let (column, row) = (within % grid[0], within / grid[0]);
         readers[picture as usize].texel(column * cell[0] + x, row * cell[1] + y)
-    })])
+    };
+    Ok(vec![pyramid::build("layers", format, cell, count as u32, texel), means(cell, count as u32, texel)])
+}
+
+/// The mean of each pattern's level 0, then that of all, as 16-bit floats.
+fn means(size: [u32; 2], count: u32, texel: impl Fn(u32, u32, u32) -> Vec4 + Sync) -> Made {
+    let mean = |layer: u32| {
+        let rows = (0..size[1]).map(|y| {
+            let row = (0..size[0]).map(|x| texel(layer, x, y).as_dvec4());
+            row.fold(DVec4::ZERO, Add::add)
+        });
+        rows.fold(DVec4::ZERO, Add::add) / (f64::from(size[0]) * f64::from(size[1]))
+    };
+    let mut means: Vec<DVec4> = (0..count).into_par_iter().map(mean).collect();
+    means.push(means.iter().copied().fold(DVec4::ZERO, Add::add) / f64::from(count));
+    let table = Table::with_levels(Format::Rgba16Float, [count + 1, 1], 1, 1);
+    let mut bytes = vec![0; table.bytes() as usize];
+    let writer = encoding::Writer::new(Format::Rgba16Float);
+    for (slot, mean) in bytes.chunks_exact_mut(8).zip(&means) {
+        writer.write(mean.as_vec4(), slot);
+    }
+    Made { field: "means", table, bytes }
 }
 
 /// The results for all items, in parallel; or all errors, in their order.

@@ -1,0 +1,336 @@
+//! Filtering of patterns across the borders of tiles: what `tiled` and `reference` promise, on the
+//! CPU and on the GPU. GPU tests are shown as ignored where there is no adapter;
+//! `TEXGRAPH_GPU=required` makes that a failure.
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use std::path::Path;
+use std::sync::Arc;
+use texgraph_compiler::manifest::{Format, Table};
+use texgraph_compiler::{Library, Options, Program, compile, diagnostic::render};
+use texgraph_runtime::cpu;
+use texgraph_runtime::gpu::{Gpu, Preference};
+use texgraph_runtime::picture::Picture;
+use texgraph_runtime::project::Project;
+use texgraph_runtime::render::Request;
+use texgraph_runtime::resource::{Tables, load};
+
+/// A channel may differ by this much from the same picture made otherwise.
+const TOLERANCE: f32 = 1.0 / 255.0;
+const SIDE: u32 = 128;
+/// Sides of one tile in pixels, from much magnified to many tiles a pixel.
+const PIXELS_A_TILE: [f64; 16] =
+    [512.0, 130.0, 47.3, 32.0, 16.0, 13.7, 9.1, 8.0, 5.3, 3.1, 2.0, 1.4, 1.0, 0.77, 0.6, 0.1];
+
+/// What draws: the CPU, or a GPU.
+#[derive(Clone)]
+enum Renderer {
+    Cpu,
+    Gpu(Arc<Gpu>),
+}
+
+type Test = fn(&Renderer) -> Result<(), Failed>;
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
+    let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
+    let tests: [(&str, Test); 7] = [
+        ("copies_of_one_pattern_are_the_repeated_image", copies_are_the_repeated_image),
+        ("a_wrapped_pattern_is_the_repeated_image", wrapped_is_the_repeated_image),
+        ("the_level_has_no_seam", the_level_has_no_seam),
+        ("different_patterns_are_one_picture", different_patterns_are_one_picture),
+        ("a_pattern_alone_lies_on_nothing", alone_lies_on_nothing),
+        ("far_tiles_become_the_mean", far_tiles_become_the_mean),
+        ("levels_are_those_of_the_filter", levels_are_those_of_the_filter),
+    ];
+    let mut trials = Vec::new();
+    for (name, test) in tests {
+        trials.push(Trial::test(format!("cpu::{name}"), move || test(&Renderer::Cpu)));
+        let gpu = gpu.clone();
+        let ignored = gpu.is_err() && !required;
+        let run = move || test(&Renderer::Gpu(gpu.map_err(|error| error.to_string())?));
+        trials.push(Trial::test(format!("gpu::{name}"), run).with_ignored_flag(ignored));
+    }
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+/// A folder with `tiles.png`: two by two tiles of 16 by 16 texels of noise, some transparent, and
+/// `one.png`, the first of them; and with `flat.png`, all the same.
+fn folder() -> Result<tempfile::TempDir, Failed> {
+    let folder = tempfile::tempdir()?;
+    let texel = |x: u32, y: u32| {
+        let word = (x * 73 + y * 151 + 7).wrapping_mul(2_654_435_761);
+        let [r, g, b, a] = (word ^ (word >> 13)).wrapping_mul(2_246_822_519).to_be_bytes();
+        image::Rgba([r, g, b, a | 0x3f])
+    };
+    let save =
+        |name: &str, side: u32| image::RgbaImage::from_fn(side, side, texel).save(folder.path().join(name));
+    save("tiles.png", 32)?;
+    save("one.png", 16)?;
+    Ok(folder)
+}
+
+/// A program with its tables, from a source.
+fn loaded(folder: &Path, source: &str) -> Result<(Program, Tables), Failed> {
+    let file = folder.join("main.tex");
+    std::fs::write(&file, source)?;
+    let library = Library::standard()?;
+    let project = Project::new(&file, true);
+    let compiled = compile(&library, project.main(), &project, &Options::default());
+    let compiled = compiled.map_err(|f| render::human(&f.sources, &f.diagnostics))?;
+    let mut program = compiled.program;
+    let tables = load(&mut program, &project).map_err(|d| render::human(&compiled.sources, &d))?;
+    Ok((program, tables))
+}
+
+/// The pictures of a program over several views.
+fn draw(
+    renderer: &Renderer,
+    (program, tables): &(Program, Tables),
+    requests: &[Request],
+) -> Result<Vec<Picture>, Failed> {
+    let drawn: Result<Vec<Picture>, _> = match renderer {
+        Renderer::Cpu => {
+            requests.iter().map(|request| cpu::render(program, tables, request, &|_| {})).collect()
+        }
+        Renderer::Gpu(gpu) => gpu.prepare(program, tables, 0).and_then(|mut prepared| {
+            requests.iter().map(|request| prepared.render(request, &|_| {})).collect()
+        }),
+    };
+    drawn.map_err(|error| error.to_string().into())
+}
+
+/// A view over a plane of tiles of side 1, not aligned to them; pixels are a little higher than wide.
+fn view(pixels_a_tile: f64) -> Request {
+    let side = f64::from(SIDE) / pixels_a_tile;
+    let region = [-0.4037 * side, -0.3019 * side, 0.5963 * side, 0.7 * side];
+    Request { region, ..Request::new([SIDE, SIDE]) }
+}
+
+/// Draws both at the zooms at which a tile has at least so many pixels; they are the same.
+fn same(renderer: &Renderer, folder: &Path, sources: [&str; 2], least_pixels: f64) -> Result<(), Failed> {
+    let zooms: Vec<f64> = PIXELS_A_TILE.into_iter().filter(|pixels| *pixels >= least_pixels).collect();
+    let requests: Vec<Request> = zooms.iter().copied().map(view).collect();
+    let [one, two] = sources.map(|source| draw(renderer, &loaded(folder, source)?, &requests));
+    for ((pixels, one), two) in zooms.iter().zip(&one?).zip(&two?) {
+        let worst = worst(one, two);
+        if worst > TOLERANCE {
+            return Err(format!("at {pixels} pixels a tile they differ by {:.3}/255", worst * 255.0).into());
+        }
+    }
+    Ok(())
+}
+
+/// The greatest difference of a channel.
+fn worst(one: &Picture, two: &Picture) -> f32 {
+    let pixels = one.pixels.iter().flatten().zip(two.pixels.iter().flatten());
+    pixels.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// A GPU's own level of detail may be off its definition by this much: its logarithm is made of
+/// straight pieces, in lavapipe of one for each octave.
+const OWN_LEVEL: f32 = 0.09;
+
+/// The picture repeated. By [`OWN_LEVEL`], which shows where levels differ as much as in noise, a GPU
+/// samples it at the level as it is defined.
+fn repeated(renderer: &Renderer) -> &'static str {
+    match renderer {
+        Renderer::Cpu => {
+            r#"
+let one = image("one.png")
+texture t(uv: vec2) -> (color: color) { color = one.sample(uv) }
+"#
+        }
+        Renderer::Gpu(_) => AT_ITS_LEVEL,
+    }
+}
+
+const AT_ITS_LEVEL: &str = r#"
+let one = image("one.png")
+texture t(uv: vec2) -> (color: color) { color = one.sample(uv, lod: one.level(uv)) }
+"#;
+
+fn copies_are_the_repeated_image(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let source = r#"
+let one = patterns("one.png")
+texture t(uv: vec2) -> (color: color) {
+    let (cell, at) = tile_map(uv, ivec2(1))
+    color = one.tiled(cell, at, |c| 0, edges: blend)
+}
+"#;
+    same(renderer, folder.path(), [source, repeated(renderer)], 0.0)
+}
+
+fn wrapped_is_the_repeated_image(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let source = r#"
+let one = patterns("one.png")
+texture t(uv: vec2) -> (color: color) { color = one.reference(0, uv, edges: wrap) }
+"#;
+    same(renderer, folder.path(), [source, repeated(renderer)], 0.0)
+}
+
+/// The four tiles of one picture, each where it was, are that picture: until levels are reached
+/// where a texel of the picture is more than a tile.
+fn different_patterns_are_one_picture(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let source = r#"
+let tiles = patterns("tiles.png", grid: ivec2(2))
+texture t(uv: vec2) -> (color: color) {
+    let (cell, at) = tile_map(uv, ivec2(1))
+    color = tiles.tiled(cell, at, |c| c.x % 2 + 2 * (c.y % 2))
+}
+"#;
+    let other = r#"
+let tiles = image("tiles.png")
+texture t(uv: vec2) -> (color: color) { color = tiles.sample(uv * 0.5, lod: tiles.level(uv * 0.5)) }
+"#;
+    same(renderer, folder.path(), [source, other], 1.0)
+}
+
+/// 0, 1/8, 2/8, … as 16-bit floats.
+const EIGHTHS: [u16; 5] = [0, 0x3000, 0x3400, 0x3600, 0x3800];
+
+/// Gives a resource levels of one colour each: level l is grey l / 8.
+/// In 16-bit floats: of 8 bits a software adapter blends levels in 8 bits too.
+fn flatten((program, tables): &mut (Program, Tables)) {
+    let textures = program.manifest.resources.iter_mut().enumerate();
+    let textures = textures.flat_map(|(index, r)| r.textures.iter_mut().map(move |texture| (index, texture)));
+    for (index, texture) in textures.filter(|(_, texture)| texture.field != "means") {
+        let Some(old) = &texture.table else { continue };
+        let table = Table::mipmapped(Format::Rgba16Float, [old.width, old.height], old.layers);
+        let mut bytes = Vec::new();
+        for (level, grey) in table.levels.iter().zip(EIGHTHS) {
+            bytes.extend(grey.to_le_bytes().repeat(level.bytes() as usize / 2));
+        }
+        texture.table = Some(table);
+        tables.insert(index, &texture.field, bytes);
+    }
+}
+
+fn the_level_has_no_seam(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let bodies = [
+        "color = tiles.tiled(cell, at, |c| virtual_index(c, 4), far: vec4(vec3(0.5), 1.0))",
+        "color = tiles.tiled(cell, at, |c| virtual_index(c, 4), edges: clamp, far: vec4(0.5))",
+        "color = tiles.reference(virtual_index(cell, 4), at)",
+        "color = tiles.reference(0, uv, edges: wrap)",
+    ];
+    for body in bodies {
+        let source = format!(
+            "let tiles = patterns(\"tiles.png\", grid: ivec2(2))\n\
+             texture t(uv: vec2) -> (color: color) {{\n\
+             let (cell, at) = tile_map(uv, ivec2(1))\n{body}\n}}"
+        );
+        let mut made = loaded(folder.path(), &source)?;
+        flatten(&mut made);
+        let pictures = draw(renderer, &made, &PIXELS_A_TILE.map(view))?;
+        for (pixels, picture) in PIXELS_A_TILE.iter().zip(pictures) {
+            let reds = || picture.pixels.iter().map(|pixel| pixel[0]);
+            let (low, high) = (reds().fold(9.0, f32::min), reds().fold(-9.0, f32::max));
+            if high - low > 1e-3 {
+                return Err(format!("{body}: {low} to {high} at {pixels} pixels a tile").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Beyond its edges a pattern is nothing: the same as in the middle of a transparent picture.
+fn alone_lies_on_nothing(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let one = image::open(folder.path().join("one.png"))?.to_rgba8();
+    let mut wide = image::RgbaImage::new(64, 64);
+    image::imageops::replace(&mut wide, &one, 16, 16);
+    wide.save(folder.path().join("wide.png"))?;
+    let source = r#"
+let one = patterns("one.png")
+texture t(uv: vec2) -> (color: color) { color = one.reference(0, uv, edges: clear) }
+"#;
+    let other = r#"
+let wide = image("wide.png", wrap: clamp)
+texture t(uv: vec2) -> (color: color) {
+    let at = uv * 0.25 + 0.25
+    color = wide.sample(at, lod: wide.level(at))
+}
+"#;
+    same(renderer, folder.path(), [source, other], 1.0)
+}
+
+/// From two tiles a pixel on every pixel is the mean of the patterns, and the mean colour of the
+/// picture does not drift on the way there.
+fn far_tiles_become_the_mean(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let head = "let tiles = patterns(\"tiles.png\", grid: ivec2(2))\n";
+    let source = format!(
+        "{head}texture t(uv: vec2) -> (color: color) {{\n\
+         let (cell, at) = tile_map(uv, ivec2(1))\n\
+         color = tiles.tiled(cell, at, |c| virtual_index(c, tiles.count))\n}}"
+    );
+    let means = format!("{head}texture t(uv: vec2) -> (color: color) {{ color = tiles.average }}");
+    let each = format!(
+        "{head}texture t(uv: vec2) -> (color: color) {{\n\
+         color = (tiles.average(0) + tiles.average(1) + tiles.average(2) + tiles.average(3)) / 4.0\n}}"
+    );
+    let exact = exact_mean(folder.path())?;
+    let (tiled, means, each) =
+        (loaded(folder.path(), &source)?, loaded(folder.path(), &means)?, loaded(folder.path(), &each)?);
+    let request = [Request::new([4, 4])];
+    for made in [&means, &each] {
+        let found = draw(renderer, made, &request)?[0].pixels[5];
+        let off = found.iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+        if off > 5e-4 {
+            return Err(format!("the mean is {found:?}, not {exact:?}").into());
+        }
+    }
+    let zooms = [1.0, 0.9, 0.75, 0.6, 0.5, 0.3, 0.02];
+    for (pixels, picture) in zooms.into_iter().zip(draw(renderer, &tiled, &zooms.map(view))?) {
+        let count = picture.pixels.len() as f32;
+        for channel in 0..4 {
+            let values = || picture.pixels.iter().map(|pixel| pixel[channel]);
+            let drift = values().sum::<f32>() / count - exact[channel];
+            let spread = values().map(|value| (value - exact[channel]).abs()).fold(0.0, f32::max);
+            if drift.abs() > TOLERANCE || (pixels <= 0.5 && spread > TOLERANCE) {
+                return Err(format!("{pixels} pixels a tile: drift {drift}, spread {spread}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The mean of `tiles.png`: linear and premultiplied.
+fn exact_mean(folder: &Path) -> Result<[f32; 4], Failed> {
+    let picture = image::open(folder.join("tiles.png"))?.to_rgba8();
+    let mut sum = [0.0; 4];
+    for image::Rgba([r, g, b, a]) in picture.pixels() {
+        let alpha = f64::from(*a) / 255.0;
+        for (sum, code) in sum.iter_mut().zip([r, g, b]) {
+            *sum += texgraph_runtime::resource::srgb_to_linear(f64::from(*code) / 255.0) * alpha;
+        }
+        sum[3] += alpha;
+    }
+    let count = f64::from(picture.width() * picture.height());
+    Ok(sum.map(|sum| (sum / count) as f32))
+}
+
+/// `level` is the level that a sample reads.
+fn levels_are_those_of_the_filter(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let source = r#"
+let one = image("one.png")
+texture t(uv: vec2) -> (height: float) {
+    height = one.sample(uv).r * 8.0 - clamp(one.level(uv), 0.0, 4.0)
+}
+"#;
+    let mut made = loaded(folder.path(), source)?;
+    flatten(&mut made);
+    let most = if matches!(renderer, Renderer::Cpu) { 1e-3 } else { OWN_LEVEL };
+    for (pixels, picture) in PIXELS_A_TILE.iter().zip(draw(renderer, &made, &PIXELS_A_TILE.map(view))?) {
+        let worst = picture.pixels.iter().map(|pixel| pixel[0].abs()).fold(0.0, f32::max);
+        if worst > most {
+            return Err(format!("at {pixels} pixels a tile the level is off by {worst}").into());
+        }
+    }
+    Ok(())
+}
