@@ -6,7 +6,7 @@
 
 use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, FunctionId, Texel, View, ViewDimension};
-use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Wrap};
+use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, Stop, Wrap};
 
 /// A resource of a program: one constructor call.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,8 @@ pub struct Kind {
     /// The constructor's and the type's name.
     pub name: &'static str,
     /// What the constructor takes. Besides the language's types: `text`, `texts` (one string or a
-    /// list of them) and `cells` (a string or rows of ints).
+    /// list of them), `cells` (a string or rows of ints) and `stops` (lists of a place and a colour,
+    /// any number of them one after the other).
     pub constructor: &'static str,
     /// One line for the reference.
     pub doc: &'static str,
@@ -122,6 +123,8 @@ pub enum Argument {
     Texts(Vec<String>),
     /// Rows of ints.
     Rows(Vec<Vec<i32>>),
+    /// Stops of a ramp.
+    Stops(Vec<Stop>),
     /// A number.
     Number(Constant),
     /// A bare word.
@@ -265,6 +268,19 @@ pub static KINDS: &[Kind] = &[
         make: make_indices,
     },
     Kind {
+        name: "ramp",
+        constructor: "(stops: stops, space: linear | srgb | oklab = oklab) -> ramp",
+        doc: "A ramp of colours, filtered by how far its place spreads.",
+        gives: None,
+        fields: &[
+            Field { name: "colors", kind: FieldKind::View(PIXELS) },
+            Field { name: "low", kind: FieldKind::Constant },
+            Field { name: "high", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: make_ramp,
+    },
+    Kind {
         name: "bake",
         constructor: "(field: node(uv: vec2) -> texel, size: ivec2 = 512, \
                       wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
@@ -284,17 +300,8 @@ pub fn made_by(row: usize) -> usize {
 }
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] = &[
-    "images",
-    "volume",
-    "probability",
-    "materials",
-    "exemplar",
-    "sprites",
-    "positions",
-    "pixel_map",
-    "ramp",
-];
+pub const LATER: &[&str] =
+    &["images", "volume", "probability", "materials", "exemplar", "sprites", "positions", "pixel_map"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     a.isotropic()?;
@@ -352,6 +359,29 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
             ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
         ],
         sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: a.filter() }),
+    })
+}
+
+fn make_ramp(a: &Arguments) -> Result<Made, Diagnostic> {
+    let stops = match a.get("stops") {
+        Some((Argument::Stops(stops), _)) => stops.clone(),
+        _ => Vec::new(),
+    };
+    let place = a.place("stops");
+    let [first, .., last] = stops.as_slice() else { return Err(constructors::too_few_stops(place)) };
+    if first.at >= last.at || stops.windows(2).any(|pair| pair[0].at > pair[1].at) {
+        return Err(constructors::stops_in_disorder(place));
+    }
+    let ends = [("low", first.at), ("high", last.at)];
+    let space = match a.word("space") {
+        "linear" => Space::Linear,
+        "srgb" => Space::Srgb,
+        _ => Space::Oklab,
+    };
+    Ok(Made {
+        recipe: Recipe::Ramp { stops, space },
+        constants: ends.map(|(name, at)| (name, Constant::floats(&[at]))).into(),
+        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: Filter::Linear }),
     })
 }
 
