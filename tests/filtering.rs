@@ -34,7 +34,7 @@ fn main() {
     let arguments = Arguments::from_args();
     let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
     let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
-    let tests: [(&str, Test); 8] = [
+    let tests: [(&str, Test); 9] = [
         ("copies_of_one_pattern_are_the_repeated_image", copies_are_the_repeated_image),
         ("a_wrapped_pattern_is_the_repeated_image", wrapped_is_the_repeated_image),
         ("the_level_has_no_seam", the_level_has_no_seam),
@@ -42,6 +42,7 @@ fn main() {
         ("a_pattern_alone_lies_on_nothing", alone_lies_on_nothing),
         ("far_tiles_become_the_mean", far_tiles_become_the_mean),
         ("levels_are_those_of_the_filter", levels_are_those_of_the_filter),
+        ("levels_count_on_anisotropy", levels_count_on_anisotropy),
         ("a_ramp_is_the_mean_over_a_pixel", a_ramp_is_the_mean_over_a_pixel),
     ];
     let mut trials = Vec::new();
@@ -358,6 +359,38 @@ fn a_ramp_is_the_mean_over_a_pixel(renderer: &Renderer) -> Result<(), Failed> {
                     return Err(format!("{pixels}: pixel {i} is {value}, the mean {mean}").into());
                 }
             }
+        }
+    }
+    Ok(())
+}
+
+/// With N samples along the longer gradient the level is that of the shorter, or of an Nth of the
+/// longer; 16 texels a side make a texel a pixel at 16 pixels a tile.
+fn levels_count_on_anisotropy(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    for (anisotropy, stretch, level) in
+        [(1, 1, 2.0), (1, 8, 5.0), (2, 8, 4.0), (4, 8, 3.0), (8, 8, 2.0), (16, 8, 2.0), (16, 1, 2.0)]
+    {
+        let source = format!(
+            "let one = image(\"one.png\", anisotropy: {anisotropy})\n\
+             texture t(uv: vec2) -> (height: float) {{ height = one.level(uv * vec2(1.0, {stretch}.0)) }}"
+        );
+        let made = loaded(folder.path(), &source)?;
+        let found =
+            draw(renderer, &made, &[Request { region: [0.0, 0.0, 2.0, 2.0], ..Request::new([8, 8]) }])?;
+        let found = found[0].pixels[9][0];
+        if (found - level).abs() > 1e-3 {
+            return Err(format!("{anisotropy}, stretched {stretch} times: level {found}, not {level}").into());
+        }
+        if made
+            .0
+            .manifest
+            .resources
+            .iter()
+            .flat_map(|r| &r.textures)
+            .any(|texture| texture.sampler.as_ref().is_some_and(|s| s.anisotropy != anisotropy))
+        {
+            return Err("the sampler has another anisotropy".into());
         }
     }
     Ok(())

@@ -32,6 +32,8 @@ pub struct SamplerState {
     pub wrap: Wrap,
     /// Within and between levels.
     pub filter: Filter,
+    /// The most samples along the longer gradient, 1 to 16.
+    pub anisotropy: u8,
 }
 
 /// A row of the table.
@@ -195,17 +197,19 @@ impl Arguments {
         }
     }
 
-    fn isotropic(&self) -> Result<(), Diagnostic> {
-        match self.int("anisotropy") {
-            1 => Ok(()),
-            _ => Err(constructors::not_yet(self.place("anisotropy"), "anisotropic filtering")),
+    /// How a picture is sampled.
+    fn sampler(&self, wrap: Wrap) -> Result<SamplerState, Diagnostic> {
+        let anisotropy = self.count("anisotropy", 1, 16)? as u8;
+        if anisotropy > 1 && self.filter() == Filter::Nearest {
+            return Err(constructors::anisotropy_of_nearest(self.place("anisotropy")));
         }
+        Ok(SamplerState { wrap, filter: self.filter(), anisotropy })
     }
 }
 
-const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
-const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled };
-const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer };
+const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
+const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled, anisotropy: 1 };
+const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer, anisotropy: 1 };
 
 /// The texture that small tables of ints share, a row each: a graph stays inside the number of
 /// textures that a shader may read.
@@ -304,12 +308,12 @@ pub const LATER: &[&str] =
     &["images", "volume", "probability", "materials", "exemplar", "sprites", "positions", "pixel_map"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
-    a.isotropic()?;
+    let sampler = a.sampler(a.wrap())?;
     let path = a.paths("path").into_iter().next().unwrap_or_default();
     Ok(Made {
         recipe: Recipe::Image { path, encoding: a.encoding() },
         constants: Vec::new(),
-        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
+        sampler: Some(sampler),
     })
 }
 
@@ -329,12 +333,12 @@ fn make_bake(a: &Arguments) -> Result<Made, Diagnostic> {
     Ok(Made {
         recipe: Recipe::Bake { size: size.map(|side| side as u32), format },
         constants: Vec::new(),
-        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
+        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter(), anisotropy: 1 }),
     })
 }
 
 fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
-    a.isotropic()?;
+    let sampler = a.sampler(Wrap::Clamp)?;
     let paths = a.paths("paths");
     let place = a.place("grid");
     let (columns, rows) = match a.get("grid") {
@@ -358,7 +362,7 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
             ("count", Constant::ints(&[count as i32])),
             ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
         ],
-        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: a.filter() }),
+        sampler: Some(sampler),
     })
 }
 
@@ -381,7 +385,7 @@ fn make_ramp(a: &Arguments) -> Result<Made, Diagnostic> {
     Ok(Made {
         recipe: Recipe::Ramp { stops, space },
         constants: ends.map(|(name, at)| (name, Constant::floats(&[at]))).into(),
-        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: Filter::Linear }),
+        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: Filter::Linear, anisotropy: 1 }),
     })
 }
 

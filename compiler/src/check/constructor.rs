@@ -5,7 +5,7 @@ use super::head::Head;
 use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};
-use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, ViewId};
+use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, View, ViewId};
 use crate::manifest::{Recipe, Stop};
 use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, SHARED, made_by};
 use std::rc::Rc;
@@ -63,9 +63,15 @@ impl<'a> Checker<'a> {
             let resource = self.resources.len();
             let mut views = Vec::new();
             let mut constants = made.constants.clone();
+            let anisotropy = made.sampler.map_or(1, |sampler| sampler.anisotropy);
+            // One is left out, so that the library's own specialisations can be taken over.
+            if anisotropy > 1 {
+                constants.push((ANISOTROPY, Constant::ints(&[i32::from(anisotropy)])));
+            }
             for field in KINDS[kind].fields {
                 match field.kind {
                     FieldKind::View(view) => {
+                        let view = with_anisotropy(view, &constants);
                         views.push(ViewId(self.views.len() as u32));
                         self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
                     }
@@ -265,6 +271,15 @@ fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, D
             _ => Err(constructors::wrong_argument(*at, input, ROWS)),
         })
         .collect()
+}
+
+/// The constant that says how a resource's views are sampled, where that is more than once.
+const ANISOTROPY: &str = "anisotropy";
+
+/// A view of a resource with these constants.
+pub fn with_anisotropy(view: View, constants: &[(&'static str, Constant)]) -> View {
+    let found = constants.iter().find(|(name, _)| *name == ANISOTROPY);
+    View { anisotropy: found.map_or(1, |(_, n)| n.int(0).clamp(1, 16) as u8), ..view }
 }
 
 /// Placeholders for the constants of a resource input, to check a node that nobody calls.

@@ -83,7 +83,8 @@ pub fn not_known(place: Place, input: &str) -> Diagnostic {
     .help("resources are made once, when loading: use constants")
 }
 
-/// Something of a constructor that is not built yet.
-pub fn not_yet(place: Place, what: &str) -> Diagnostic {
-    super::unsupported::not_yet(place, what)
+/// Anisotropy where texels are not blended.
+pub fn anisotropy_of_nearest(place: Place) -> Diagnostic {
+    Diagnostic::new("E0556", place, "with `filter: nearest` there is no anisotropy", "only 1 is possible")
+        .help("leave `anisotropy:` or `filter:` out")
 }
