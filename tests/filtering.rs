@@ -34,7 +34,7 @@ fn main() {
     let arguments = Arguments::from_args();
     let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
     let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
-    let tests: [(&str, Test); 7] = [
+    let tests: [(&str, Test); 9] = [
         ("copies_of_one_pattern_are_the_repeated_image", copies_are_the_repeated_image),
         ("a_wrapped_pattern_is_the_repeated_image", wrapped_is_the_repeated_image),
         ("the_level_has_no_seam", the_level_has_no_seam),
@@ -42,6 +42,8 @@ fn main() {
         ("a_pattern_alone_lies_on_nothing", alone_lies_on_nothing),
         ("far_tiles_become_the_mean", far_tiles_become_the_mean),
         ("levels_are_those_of_the_filter", levels_are_those_of_the_filter),
+        ("levels_count_on_anisotropy", levels_count_on_anisotropy),
+        ("a_ramp_is_the_mean_over_a_pixel", a_ramp_is_the_mean_over_a_pixel),
     ];
     let mut trials = Vec::new();
     for (name, test) in tests {
@@ -330,6 +332,65 @@ texture t(uv: vec2) -> (height: float) {
         let worst = picture.pixels.iter().map(|pixel| pixel[0].abs()).fold(0.0, f32::max);
         if worst > most {
             return Err(format!("at {pixels} pixels a tile the level is off by {worst}").into());
+        }
+    }
+    Ok(())
+}
+
+/// What a ramp gives for a pixel is the mean of what it gives for 32 places across it, but for the
+/// shape of the filter; and for a place that is spread far it is the mean of all.
+fn a_ramp_is_the_mean_over_a_pixel(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let head = "let r = ramp([-0.5, #d03020], [0.1, #2040c0c0], [0.3, #ffe080], [1.5, #104010])\n";
+    let source =
+        |body: &str| format!("{head}texture t(uv: vec2) -> (color: color) {{ color = r.at(uv.x{body}) }}");
+    let filtered = loaded(folder.path(), &source(""))?;
+    let plain = loaded(folder.path(), &source(", spread: 0.0"))?;
+    for (pixels, tolerance) in [(16, 0.02), (32, 0.008), (128, 0.004)] {
+        let view = |across| Request { region: [-0.5, 0.0, 1.5, 1.0], ..Request::new([across, 2]) };
+        let mean = &draw(renderer, &plain, &[view(32 * pixels)])?[0];
+        let found = &draw(renderer, &filtered, &[view(pixels)])?[0];
+        // The ramp goes on beyond its ends, its pixels here do not.
+        for (i, pixel) in found.pixels.iter().take(pixels as usize).enumerate().skip(2).rev().skip(2) {
+            let parts = &mean.pixels[32 * i..32 * i + 32];
+            for (channel, value) in pixel.iter().enumerate() {
+                let mean = parts.iter().map(|part| part[channel]).sum::<f32>() / 32.0;
+                if (value - mean).abs() > tolerance {
+                    return Err(format!("{pixels}: pixel {i} is {value}, the mean {mean}").into());
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// With N samples along the longer gradient the level is that of the shorter, or of an Nth of the
+/// longer; 16 texels a side make a texel a pixel at 16 pixels a tile.
+fn levels_count_on_anisotropy(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    for (anisotropy, stretch, level) in
+        [(1, 1, 2.0), (1, 8, 5.0), (2, 8, 4.0), (4, 8, 3.0), (8, 8, 2.0), (16, 8, 2.0), (16, 1, 2.0)]
+    {
+        let source = format!(
+            "let one = image(\"one.png\", anisotropy: {anisotropy})\n\
+             texture t(uv: vec2) -> (height: float) {{ height = one.level(uv * vec2(1.0, {stretch}.0)) }}"
+        );
+        let made = loaded(folder.path(), &source)?;
+        let found =
+            draw(renderer, &made, &[Request { region: [0.0, 0.0, 2.0, 2.0], ..Request::new([8, 8]) }])?;
+        let found = found[0].pixels[9][0];
+        if (found - level).abs() > 1e-3 {
+            return Err(format!("{anisotropy}, stretched {stretch} times: level {found}, not {level}").into());
+        }
+        if made
+            .0
+            .manifest
+            .resources
+            .iter()
+            .flat_map(|r| &r.textures)
+            .any(|texture| texture.sampler.as_ref().is_some_and(|s| s.anisotropy != anisotropy))
+        {
+            return Err("the sampler has another anisotropy".into());
         }
     }
     Ok(())

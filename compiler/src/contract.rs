@@ -342,7 +342,7 @@ fn resources(
                 binding: next(),
                 wrap: state.wrap,
                 filter: state.filter,
-                anisotropy: 1,
+                anisotropy: u16::from(state.anisotropy),
             }),
             table: baked(&resource.recipe),
         });

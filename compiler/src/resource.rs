@@ -6,7 +6,7 @@
 
 use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, FunctionId, Texel, View, ViewDimension};
-use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Wrap};
+use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, Stop, Wrap};
 
 /// A resource of a program: one constructor call.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,8 @@ pub struct SamplerState {
     pub wrap: Wrap,
     /// Within and between levels.
     pub filter: Filter,
+    /// The most samples along the longer gradient, 1 to 16.
+    pub anisotropy: u8,
 }
 
 /// A row of the table.
@@ -39,7 +41,8 @@ pub struct Kind {
     /// The constructor's and the type's name.
     pub name: &'static str,
     /// What the constructor takes. Besides the language's types: `text`, `texts` (one string or a
-    /// list of them) and `cells` (a string or rows of ints).
+    /// list of them), `cells` (a string or rows of ints) and `stops` (lists of a place and a colour,
+    /// any number of them one after the other).
     pub constructor: &'static str,
     /// One line for the reference.
     pub doc: &'static str,
@@ -122,6 +125,8 @@ pub enum Argument {
     Texts(Vec<String>),
     /// Rows of ints.
     Rows(Vec<Vec<i32>>),
+    /// Stops of a ramp.
+    Stops(Vec<Stop>),
     /// A number.
     Number(Constant),
     /// A bare word.
@@ -192,17 +197,19 @@ impl Arguments {
         }
     }
 
-    fn isotropic(&self) -> Result<(), Diagnostic> {
-        match self.int("anisotropy") {
-            1 => Ok(()),
-            _ => Err(constructors::not_yet(self.place("anisotropy"), "anisotropic filtering")),
+    /// How a picture is sampled.
+    fn sampler(&self, wrap: Wrap) -> Result<SamplerState, Diagnostic> {
+        let anisotropy = self.count("anisotropy", 1, 16)? as u8;
+        if anisotropy > 1 && self.filter() == Filter::Nearest {
+            return Err(constructors::anisotropy_of_nearest(self.place("anisotropy")));
         }
+        Ok(SamplerState { wrap, filter: self.filter(), anisotropy })
     }
 }
 
-const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
-const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled };
-const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer };
+const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
+const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled, anisotropy: 1 };
+const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer, anisotropy: 1 };
 
 /// The texture that small tables of ints share, a row each: a graph stays inside the number of
 /// textures that a shader may read.
@@ -265,6 +272,19 @@ pub static KINDS: &[Kind] = &[
         make: make_indices,
     },
     Kind {
+        name: "ramp",
+        constructor: "(stops: stops, space: linear | srgb | oklab = oklab) -> ramp",
+        doc: "A ramp of colours, filtered by how far its place spreads.",
+        gives: None,
+        fields: &[
+            Field { name: "colors", kind: FieldKind::View(PIXELS) },
+            Field { name: "low", kind: FieldKind::Constant },
+            Field { name: "high", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: make_ramp,
+    },
+    Kind {
         name: "bake",
         constructor: "(field: node(uv: vec2) -> texel, size: ivec2 = 512, \
                       wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
@@ -284,25 +304,16 @@ pub fn made_by(row: usize) -> usize {
 }
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] = &[
-    "images",
-    "volume",
-    "probability",
-    "materials",
-    "exemplar",
-    "sprites",
-    "positions",
-    "pixel_map",
-    "ramp",
-];
+pub const LATER: &[&str] =
+    &["images", "volume", "probability", "materials", "exemplar", "sprites", "positions", "pixel_map"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
-    a.isotropic()?;
+    let sampler = a.sampler(a.wrap())?;
     let path = a.paths("path").into_iter().next().unwrap_or_default();
     Ok(Made {
         recipe: Recipe::Image { path, encoding: a.encoding() },
         constants: Vec::new(),
-        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
+        sampler: Some(sampler),
     })
 }
 
@@ -322,12 +333,12 @@ fn make_bake(a: &Arguments) -> Result<Made, Diagnostic> {
     Ok(Made {
         recipe: Recipe::Bake { size: size.map(|side| side as u32), format },
         constants: Vec::new(),
-        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter() }),
+        sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter(), anisotropy: 1 }),
     })
 }
 
 fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
-    a.isotropic()?;
+    let sampler = a.sampler(Wrap::Clamp)?;
     let paths = a.paths("paths");
     let place = a.place("grid");
     let (columns, rows) = match a.get("grid") {
@@ -351,7 +362,30 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
             ("count", Constant::ints(&[count as i32])),
             ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
         ],
-        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: a.filter() }),
+        sampler: Some(sampler),
+    })
+}
+
+fn make_ramp(a: &Arguments) -> Result<Made, Diagnostic> {
+    let stops = match a.get("stops") {
+        Some((Argument::Stops(stops), _)) => stops.clone(),
+        _ => Vec::new(),
+    };
+    let place = a.place("stops");
+    let [first, .., last] = stops.as_slice() else { return Err(constructors::too_few_stops(place)) };
+    if first.at >= last.at || stops.windows(2).any(|pair| pair[0].at > pair[1].at) {
+        return Err(constructors::stops_in_disorder(place));
+    }
+    let ends = [("low", first.at), ("high", last.at)];
+    let space = match a.word("space") {
+        "linear" => Space::Linear,
+        "srgb" => Space::Srgb,
+        _ => Space::Oklab,
+    };
+    Ok(Made {
+        recipe: Recipe::Ramp { stops, space },
+        constants: ends.map(|(name, at)| (name, Constant::floats(&[at]))).into(),
+        sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: Filter::Linear, anisotropy: 1 }),
     })
 }
 

@@ -48,7 +48,7 @@ impl Test {
 
     /// The first component of a sample at (x, x).
     fn sample(&mut self, x: Value) -> Value {
-        let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+        let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
         let picture = self.b.push(Operation::View(ViewId(0)), Type::View(view));
         let at = self.b.compose(&[x, x]);
         let level = self.number(0.0);
@@ -68,7 +68,7 @@ impl Test {
 }
 
 fn graph(functions: Vec<Function>) -> Graph {
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let picture = Resource {
         name: "photo".into(),
         label: String::new(),

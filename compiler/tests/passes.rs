@@ -286,7 +286,7 @@ fn a_condition_takes_what_its_fold_carries() {
 
 #[test]
 fn samples_in_bodies_and_conditions_have_gradients() {
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let sample = |b: &mut Builder, at: Value| {
         let picture = b.push(Operation::View(ViewId(0)), Type::View(view));
         let color = b.sample(picture, at, None, Level::Auto);
@@ -790,7 +790,7 @@ fn what_no_loop_changes_leaves_all_loops() {
 
 /// A picture's red at (x, x), level 0.
 fn sample(b: &mut Builder, x: Value) -> Value {
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let picture = b.push(Operation::View(ViewId(0)), Type::View(view));
     let (place, level) = (b.compose(&[x, x]), float(b, 0.0));
     let color = b.sample(picture, place, None, Level::Level(level));

@@ -346,6 +346,7 @@ impl<'a> Checker<'a> {
             (Declared::Resource(_), Wire::None) => Wire::None,
             (Declared::Text, Wire::Text(text)) => Wire::Text(text.clone()),
             (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire.clone(),
+            (Declared::Stops, wire @ Wire::List(_)) => wire.clone(),
             (_, Wire::Word(word, at)) => self.unknown_value(f, word, *at),
             (_, Wire::Callables(nodes)) => self.report(f, names::node_as_value(place, &nodes.name)),
             (declared, wire) => {
@@ -354,6 +355,7 @@ impl<'a> Checker<'a> {
                     Declared::Resource(kind) => format!("`{}`", KINDS[*kind].name),
                     Declared::Text => "a string".to_owned(),
                     Declared::Texts => "a string or a list of strings".to_owned(),
+                    Declared::Stops => "stops such as `[0.5, #8d8f94]`".to_owned(),
                     _ => "a string or a list of lists".to_owned(),
                 };
                 self.report(f, errors::resource_mismatch(place, input, &wanted, &found))

@@ -315,6 +315,8 @@ impl<'a> Checker<'a> {
         given: &[Given<'a>],
         place: Place,
     ) -> Wire {
+        let stops = super::constructor::joined_stops(head, given);
+        let given = stops.as_deref().unwrap_or(given);
         let Some(bound) = self.bind_arguments(f, head, dim, given, place) else {
             return Wire::Unknown;
         };

@@ -1,12 +1,12 @@
 //! Constructor calls: arguments that are known become a resource.
 
-use super::arguments::Bound;
+use super::arguments::{self, Bound, Given};
 use super::head::Head;
 use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};
-use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, ViewId};
-use crate::manifest::Recipe;
+use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, View, ViewId};
+use crate::manifest::{Recipe, Stop};
 use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, SHARED, made_by};
 use std::rc::Rc;
 use texgraph_grammar::syntax::Input;
@@ -63,9 +63,15 @@ impl<'a> Checker<'a> {
             let resource = self.resources.len();
             let mut views = Vec::new();
             let mut constants = made.constants.clone();
+            let anisotropy = made.sampler.map_or(1, |sampler| sampler.anisotropy);
+            // One is left out, so that the library's own specialisations can be taken over.
+            if anisotropy > 1 {
+                constants.push((ANISOTROPY, Constant::ints(&[i32::from(anisotropy)])));
+            }
             for field in KINDS[kind].fields {
                 match field.kind {
                     FieldKind::View(view) => {
+                        let view = with_anisotropy(view, &constants);
                         views.push(ViewId(self.views.len() as u32));
                         self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
                     }
@@ -166,6 +172,19 @@ pub fn view_field(f: &mut Frame<'_>, view: crate::graph::Value, name: &str) -> O
     (name == "size" && matches!(f.builder.ty(view), Type::View(_))).then(|| Wire::Value(f.builder.size(view)))
 }
 
+/// The arguments of a ramp with its stops, which are written one after the other, as one list.
+pub fn joined_stops<'a>(head: Head<'a>, given: &[Given<'a>]) -> Option<arguments::Arguments<'a>> {
+    head.inputs.first().filter(|input| crate::check::types::show(&input.ty) == STOPS)?;
+    let is_stop = |given: &&Given<'a>| given.name.is_none() && matches!(given.wire, Wire::List(_));
+    let stops: Vec<(Wire, Place)> =
+        given.iter().take_while(is_stop).map(|given| (given.wire.clone(), given.place)).collect();
+    let place =
+        stops.iter().map(|(_, place)| *place).reduce(|a, b| Place { span: a.span.to(b.span), ..a })?;
+    let rest = given.iter().skip(stops.len()).cloned();
+    let joined = Given { name: None, wire: Wire::List(Rc::new(stops)), place, expr: None };
+    Some(std::iter::once(joined).chain(rest).collect())
+}
+
 /// A wire as a constructor takes it.
 fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<Argument, Diagnostic> {
     let name = input.name.text.as_str();
@@ -178,8 +197,39 @@ fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<A
         },
         Wire::Node(_) => Ok(Argument::Node),
         Wire::List(items) if crate::check::types::show(&input.ty) == "texts" => texts(name, items, place),
+        Wire::List(items) if crate::check::types::show(&input.ty) == STOPS => {
+            let stops = items.iter().map(|(wire, at)| stop(f, name, wire, *at));
+            stops.collect::<Result<_, _>>().map(Argument::Stops)
+        }
         Wire::List(items) => rows(f, name, items, place),
         _ => Err(constructors::wrong_argument(place, name, "a constant")),
+    }
+}
+
+/// The type of a ramp's stops.
+const STOPS: &str = "stops";
+
+/// A place and a colour.
+fn stop(f: &Frame<'_>, input: &str, wire: &Wire, place: Place) -> Result<Stop, Diagnostic> {
+    let Wire::List(parts) = wire else { return Err(constructors::not_a_stop(place)) };
+    let mut numbers = Vec::new();
+    for (part, at) in parts.iter() {
+        let Wire::Value(value) = part else { return Err(constructors::not_a_stop(*at)) };
+        let Some(constant) = f.builder.as_constant(*value) else {
+            return Err(constructors::not_known(*at, input));
+        };
+        numbers.push(constant);
+    }
+    match numbers.as_slice() {
+        [at, color] if at.width() == 1 && color.width() == 4 && color.scalar() == Scalar::Float => {
+            let at = match at.scalar() {
+                Scalar::Float => at.float(0),
+                Scalar::Int => at.int(0) as f32,
+                Scalar::Bool => return Err(constructors::not_a_stop(place)),
+            };
+            Ok(Stop { at, color: [0, 1, 2, 3].map(|i| color.float(i)) })
+        }
+        _ => Err(constructors::not_a_stop(place)),
     }
 }
 
@@ -221,6 +271,15 @@ fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, D
             _ => Err(constructors::wrong_argument(*at, input, ROWS)),
         })
         .collect()
+}
+
+/// The constant that says how a resource's views are sampled, where that is more than once.
+const ANISOTROPY: &str = "anisotropy";
+
+/// A view of a resource with these constants.
+pub fn with_anisotropy(view: View, constants: &[(&'static str, Constant)]) -> View {
+    let found = constants.iter().find(|(name, _)| *name == ANISOTROPY);
+    View { anisotropy: found.map_or(1, |(_, n)| n.int(0).clamp(1, 16) as u8), ..view }
 }
 
 /// Placeholders for the constants of a resource input, to check a node that nobody calls.

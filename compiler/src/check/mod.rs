@@ -467,6 +467,7 @@ impl<'a> Checker<'a> {
                 for field in KINDS[*kind].fields {
                     if let Some(view) = field.kind.view() {
                         let full = format!("{name}_{}", field.name);
+                        let view = constructor::with_anisotropy(view, constants);
                         views.push((field.name, f.builder.input(full, Type::View(view))));
                     }
                 }

@@ -32,6 +32,8 @@ pub enum Declared {
     Texts,
     /// Constructors only: a string, or rows of ints.
     Cells,
+    /// Constructors only: lists of a place and a colour, one after the other.
+    Stops,
 }
 
 /// What a node that is passed to another must take and give.
@@ -161,6 +163,7 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
         "text" => Ok(Declared::Text),
         "texts" => Ok(Declared::Texts),
         "cells" => Ok(Declared::Cells),
+        "stops" => Ok(Declared::Stops),
         "texel" => Ok(Declared::Texel),
         "mat2" => Ok(Declared::Matrix(2)),
         "mat3" => Ok(Declared::Matrix(3)),

@@ -5,8 +5,9 @@ use super::types;
 use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, types as errors};
+use crate::graph;
 use crate::graph::{Axis, Builder, Constant, Level, Operation, Scalar, Type, Value};
-use crate::intrinsic::{DOT, LOG2, MAXIMUM, MULTIPLY};
+use crate::intrinsic::{DOT, MAXIMUM, MINIMUM, MULTIPLY, RAW_LOG2};
 use crate::resource::KINDS;
 use texgraph_grammar::syntax::Call;
 
@@ -149,7 +150,11 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The level of detail of a coordinate: log2 of the longer of its two derivatives in texels.
+/// 2⁻¹²⁰: levels are at least -60.
+const LEAST_SQUARE: f32 = f32::from_bits((127 - 120) << 23);
+
+/// The level of detail of a coordinate: log2 of the longer of its two derivatives in texels; where the
+/// filter takes up to N samples along that one, of the shorter or an Nth of the longer, if that is more.
 fn level_of_detail(builder: &mut Builder, view: Value, at: Value) -> Value {
     let (ty, size) = (builder.ty(at), builder.size(view));
     let size = builder.to_float(size);
@@ -158,11 +163,17 @@ fn level_of_detail(builder: &mut Builder, view: Value, at: Value) -> Value {
         let texels = builder.builtin(MULTIPLY, &[derivative, size]);
         builder.builtin(DOT, &[texels, texels])
     });
-    let longer = builder.builtin(MAXIMUM, &[x, y]);
-    // The logarithm of 0 is 0; nothing is below this square.
-    let least = builder.constant(Constant::floats(&[f32::MIN_POSITIVE]));
+    let mut longer = builder.builtin(MAXIMUM, &[x, y]);
+    if let Type::View(graph::View { anisotropy: samples @ 2.., .. }) = builder.ty(view) {
+        let share = builder.constant(Constant::floats(&[1.0 / (f32::from(samples) * f32::from(samples))]));
+        let (shorter, part) =
+            (builder.builtin(MINIMUM, &[x, y]), builder.builtin(MULTIPLY, &[longer, share]));
+        longer = builder.builtin(MAXIMUM, &[shorter, part]);
+    }
+    // A place that does not move has a level too, one that nothing reaches.
+    let least = builder.constant(Constant::floats(&[LEAST_SQUARE]));
     let longer = builder.builtin(MAXIMUM, &[longer, least]);
-    let logarithm = builder.builtin(LOG2, &[longer]);
+    let logarithm = builder.builtin(RAW_LOG2, &[longer]);
     let half = builder.constant(Constant::floats(&[0.5]));
     builder.builtin(MULTIPLY, &[logarithm, half])
 }

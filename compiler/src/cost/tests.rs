@@ -21,7 +21,7 @@ impl Test {
     fn new(name: &str) -> Test {
         let mut b = Builder::new(name);
         let x = b.input("x", Type::FLOAT);
-        let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+        let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
         let picture = b.push(Operation::View(ViewId(0)), Type::View(view));
         Test { b, x, picture }
     }
@@ -89,7 +89,7 @@ fn sampling_body(captures: usize) -> Function {
     for i in 0..captures {
         b.input(format!("c{i}"), Type::FLOAT);
     }
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let picture = b.push(Operation::View(ViewId(0)), Type::View(view));
     let level = b.constant(Constant::floats(&[0.0]));
     let at = b.compose(&[sum, sum]);

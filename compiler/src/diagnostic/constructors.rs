@@ -47,6 +47,24 @@ pub fn wrong_argument(place: Place, input: &str, wanted: &str) -> Diagnostic {
     Diagnostic::new("E0556", place, format!("`{input}` takes {wanted}"), "this does not fit")
 }
 
+/// Something else where a ramp has its stops.
+pub fn not_a_stop(place: Place) -> Diagnostic {
+    Diagnostic::new("E0556", place, "a stop of a ramp is a place and a colour", "this is none")
+        .help("write it as `[0.5, #8d8f94]`")
+}
+
+/// A ramp of one colour.
+pub fn too_few_stops(place: Place) -> Diagnostic {
+    Diagnostic::new("E0556", place, "a ramp leads from a stop to another", "only this one")
+        .help("write at least two: `[0.0, #1b1d22], [1.0, #f4f1ea]`")
+}
+
+/// Stops that stand in another order than along the ramp.
+pub fn stops_in_disorder(place: Place) -> Diagnostic {
+    Diagnostic::new("E0556", place, "the stops of a ramp go from low to high places", "these stops")
+        .help("two may share a place, for a hard edge; the first must be below the last")
+}
+
 /// A path that stands without quotes.
 pub fn unquoted_path(place: Place, path: &str) -> Diagnostic {
     Diagnostic::new("E0556", place, "a path stands between quotes", "not a string")
@@ -65,7 +83,8 @@ pub fn not_known(place: Place, input: &str) -> Diagnostic {
     .help("resources are made once, when loading: use constants")
 }
 
-/// Something of a constructor that is not built yet.
-pub fn not_yet(place: Place, what: &str) -> Diagnostic {
-    super::unsupported::not_yet(place, what)
+/// Anisotropy where texels are not blended.
+pub fn anisotropy_of_nearest(place: Place) -> Diagnostic {
+    Diagnostic::new("E0556", place, "with `filter: nearest` there is no anisotropy", "only 1 is possible")
+        .help("leave `anisotropy:` or `filter:` out")
 }

@@ -81,6 +81,8 @@ pub struct View {
     pub dimension: ViewDimension,
     /// What a texel is.
     pub texel: Texel,
+    /// The most samples along the longer gradient, 1 to 16.
+    pub anisotropy: u8,
 }
 
 impl View {

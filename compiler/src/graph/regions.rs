@@ -420,7 +420,7 @@ mod tests {
         fn new() -> Test {
             let mut b = Builder::new("test");
             let x = b.input("x", SCALAR);
-            let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+            let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
             let picture = b.push(Operation::View(ViewId(0)), Type::View(view));
             Test { b, x, picture }
         }

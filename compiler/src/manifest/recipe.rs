@@ -61,6 +61,15 @@ pub enum Recipe {
         /// Indices of resources: permutations.
         rows: Vec<u32>,
     },
+    /// A ramp of colours, filtered. Field `colors`: 256 texels across from the first stop to the last,
+    /// as 16-bit floats; row 0 as it is, row r filtered by a Gaussian of standard deviation
+    /// 2^(r/2 - 9.5) of the ramp's length, r to 21.
+    Ramp {
+        /// At least two, from low to high.
+        stops: Vec<Stop>,
+        /// Between stops.
+        space: Space,
+    },
     /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
     /// compiling.
     Bake {
@@ -69,6 +78,27 @@ pub enum Recipe {
         /// Its texels' format.
         format: Format,
     },
+}
+
+/// A colour of a ramp.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stop {
+    /// Where it stands.
+    pub at: f32,
+    /// Linear and premultiplied.
+    pub color: [f32; 4],
+}
+
+/// The space in which colours are blended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Space {
+    /// As light.
+    Linear,
+    /// As it is encoded for screens.
+    Srgb,
+    /// By equal steps for the eye (Ottosson, A perceptual color space for image processing, 2020).
+    Oklab,
 }
 
 /// Where an integer map comes from.

@@ -9,7 +9,7 @@
 //! 8.14.1). What is magnified is of level 0.
 
 use super::hoist::fixed;
-use crate::graph::{Builder, Constant, Function, Graph, Level, Operation, Value};
+use crate::graph::{Builder, Constant, Function, Graph, Level, Operation, Type, Value};
 use crate::intrinsic::{DOT, MAXIMUM, MULTIPLY, RAW_LOG2};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
@@ -40,9 +40,13 @@ fn carried(graph: &Graph) -> Vec<Option<usize>> {
     carried
 }
 
-fn key(operation: &Operation) -> Option<Key> {
+/// Anisotropic samples need their gradient.
+fn key(function: &Function, operation: &Operation) -> Option<Key> {
     match operation {
-        Operation::Sample { view, level: Level::Gradient(x, y), .. } => Some([*view, *x, *y]),
+        Operation::Sample { view, level: Level::Gradient(x, y), .. } => match function.ty(*view) {
+            Type::View(kind) if kind.anisotropy > 1 => None,
+            _ => Some([*view, *x, *y]),
+        },
         _ => None,
     }
 }
@@ -50,7 +54,8 @@ fn key(operation: &Operation) -> Option<Key> {
 /// The pictures and gradients whose level is worth a value, none of them known yet.
 fn shared(function: &Function, carried: Option<usize>) -> FxHashMap<Key, Option<Value>> {
     let mut often: FxHashMap<Key, u32> = FxHashMap::default();
-    function.values.iter().filter_map(key).for_each(|key| *often.entry(key).or_default() += 1);
+    let keys = function.values.iter().filter_map(|operation| key(function, operation));
+    keys.for_each(|key| *often.entry(key).or_default() += 1);
     if often.is_empty() {
         return FxHashMap::default();
     }
@@ -89,7 +94,7 @@ impl<'a> Sharing<'a> {
             let value = match operation {
                 Operation::Input(i) => inputs.get(*i as usize).copied().unwrap_or(Value(0)),
                 _ => {
-                    let level = key(operation).and_then(|key| self.level(key));
+                    let level = key(function, operation).and_then(|key| self.level(key));
                     let mut copy = operation.map_operands(|v| self.values[v.0 as usize]);
                     if let (Some(shared), Operation::Sample { level, .. }) = (level, &mut copy) {
                         *level = Level::Level(shared);

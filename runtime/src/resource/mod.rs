@@ -11,6 +11,7 @@ mod indices;
 mod patterns;
 mod permutation;
 pub(crate) mod pyramid;
+mod ramp;
 pub(crate) mod table;
 mod tables;
 
@@ -100,6 +101,7 @@ fn make(
         Recipe::Patterns { paths, grid, encoding } => patterns::make(project, place, paths, *grid, *encoding),
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+        Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
         Recipe::Tables { rows } => tables::make(place, rows, all),
         // Made by rendering its pass.
         Recipe::Bake { .. } => Ok(Vec::new()),

@@ -117,7 +117,7 @@ pub fn pattern(fills: u32) -> Step {
 
 /// A sample of view `n` at `uv`, with the gradient of `uv`.
 fn sample(b: &mut Builder, n: u32, uv: Value) -> Value {
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let view = b.push(Operation::View(ViewId(n)), Type::View(view));
     let [dx, dy] = [Axis::X, Axis::Y].map(|axis| b.push(Operation::Derivative(uv, axis), VEC2));
     b.sample(view, uv, None, Level::Gradient(dx, dy))

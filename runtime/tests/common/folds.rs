@@ -237,8 +237,8 @@ pub fn nested() -> Program {
 /// Samples a picture at `uv + step / 16`, the view and the gradient captured, while a map, which the
 /// condition reads by itself, is 0 at `cell.x + step`.
 pub fn gathered(folder: &Path, picture: &str) -> (Program, Tables) {
-    let sampled = Type::View(View { dimension: ViewDimension::D2, texel: Texel::Sampled });
-    let integers = Type::View(View { dimension: ViewDimension::D2, texel: Texel::Integer });
+    let sampled = Type::View(View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 });
+    let integers = Type::View(View { dimension: ViewDimension::D2, texel: Texel::Integer, anisotropy: 1 });
     let mut body = Builder::new("tap");
     let sum = body.input("sum", VEC4);
     let count = body.input("count", Type::INT);

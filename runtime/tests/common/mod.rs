@@ -81,6 +81,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Permutation { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
         Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
+        Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),
         Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
     };
     let sampler =

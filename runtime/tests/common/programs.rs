@@ -108,7 +108,7 @@ pub fn sampled(folder: &Path, recipe: Recipe, wrap: Wrap, filter: Filter) -> (Pr
     let mut b = Builder::new("test");
     let uv = b.input("uv", VEC2);
     let scale = b.push(Operation::Param(ParamId(0)), VEC2);
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let view = b.push(Operation::View(ViewId(0)), Type::View(view));
     let mul = intrinsic("*", ": vec<");
     let at = b.builtin(mul, &[uv, scale]);
@@ -137,7 +137,7 @@ pub fn tiled(folder: &Path, recipe: Recipe, wrap: Wrap, filter: Filter) -> (Prog
     let mut b = Builder::new("test");
     let uv = b.input("uv", VEC2);
     let scale = b.push(Operation::Param(ParamId(0)), VEC2);
-    let view = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled };
+    let view = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled, anisotropy: 1 };
     let view = b.push(Operation::View(ViewId(0)), Type::View(view));
     let mul = intrinsic("*", ": vec<");
     let four = b.constant(Constant::floats(&[4.0, 4.0]));
@@ -176,7 +176,7 @@ pub fn fetched(folder: &Path, recipe: Recipe) -> (Program, Tables) {
     let mut b = Builder::new("test");
     let uv = b.input("uv", VEC2);
     let scale = b.push(Operation::Param(ParamId(0)), VEC2);
-    let view = View { dimension: ViewDimension::D2, texel: Texel::Integer };
+    let view = View { dimension: ViewDimension::D2, texel: Texel::Integer, anisotropy: 1 };
     let view = b.push(Operation::View(ViewId(0)), Type::View(view));
     let wide = b.builtin(intrinsic("*", ": vec<"), &[uv, scale]);
     let cell = b.builtin(intrinsic("ifloor", "vec<"), &[wide]);
