@@ -45,7 +45,7 @@ fn main() {
         ("levels_count_on_anisotropy", levels_count_on_anisotropy),
         ("a_ramp_is_the_mean_over_a_pixel", a_ramp_is_the_mean_over_a_pixel),
     ];
-    let mut trials = Vec::new();
+    let mut trials = vec![Trial::test("anisotropic_samples_keep_their_gradient", keep_their_gradient)];
     for (name, test) in tests {
         trials.push(Trial::test(format!("cpu::{name}"), move || test(&Renderer::Cpu)));
         let gpu = gpu.clone();
@@ -391,6 +391,23 @@ fn levels_count_on_anisotropy(renderer: &Renderer) -> Result<(), Failed> {
             .any(|texture| texture.sampler.as_ref().is_some_and(|s| s.anisotropy != anisotropy))
         {
             return Err("the sampler has another anisotropy".into());
+        }
+    }
+    Ok(())
+}
+
+/// Samples that share a gradient share a level, but not where a filter takes samples along it.
+fn keep_their_gradient() -> Result<(), Failed> {
+    let folder = folder()?;
+    for (anisotropy, kept) in [(1, 0), (4, 2)] {
+        let source = format!(
+            "let one = image(\"one.png\", anisotropy: {anisotropy})\n\
+             texture t(uv: vec2) -> (color: color) {{ color = one.sample(uv) + one.sample(uv + 0.5) }}"
+        );
+        let (program, _) = loaded(folder.path(), &source)?;
+        let found = program.texture().wgsl.matches("textureSampleGrad").count();
+        if found != kept {
+            return Err(format!("anisotropy {anisotropy}: {found} samples by gradient").into());
         }
     }
     Ok(())

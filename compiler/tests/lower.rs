@@ -74,7 +74,7 @@ fn graph(functions: Vec<Function>) -> Graph {
         label: String::new(),
         place: Default::default(),
         recipe: Recipe::Permutation { size: 4, seed: 0 },
-        sampler: Some(SamplerState { wrap: Wrap::Repeat, filter: Filter::Linear }),
+        sampler: Some(SamplerState { wrap: Wrap::Repeat, filter: Filter::Linear, anisotropy: 1 }),
         bake: None,
     };
     let one = Constant::floats(&[1.0]);

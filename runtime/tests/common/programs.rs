@@ -98,6 +98,7 @@ fn view_of(n: u32, resource: &manifest::Resource) -> ResourceView {
             manifest::SampleKind::Float => Texel::Sampled,
             manifest::SampleKind::Int => Texel::Integer,
         },
+        anisotropy: 1,
     };
     let field = ["pixels", "layers", "table", "map"].into_iter().find(|field| *field == texture.field);
     ResourceView { resource: n, field: field.expect("a known field"), view }
