@@ -140,20 +140,26 @@ fn unknown_name<'a>(look: &Look<'_, 'a>) -> Option<(u32, Span, &'a str)> {
     }
 }
 
-/// Leaves out what is said of calls of a node that is wrong itself: its head may be what is wrong.
-fn without_calls_of_broken_nodes(texts: &Texts, mut diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+/// Leaves out what is said of calls of a node that is wrong itself: its head may be what is wrong. The
+/// same goes for types in the lambdas that such a node is given: it says what they take.
+fn without_calls_of_broken_nodes(texts: &Texts, diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let errors: Vec<Place> = diagnostics.iter().map(|diagnostic| diagnostic.place).collect();
     let is_broken = |file: u32, node: Span| {
         // Errors stand in source order.
         let first = errors.partition_point(|error| (error.file, error.span.start) < (file, node.start));
         errors.get(first).is_some_and(|error| error.file == file && contains(node, error.span))
     };
-    diagnostics.retain(|diagnostic| {
-        let Some(look) = texts.look(diagnostic) else { return true };
-        let node = callee(&look).map(whole);
-        node.is_none_or(|node| contains(node, look.span()) || !is_broken(look.place.file, node))
-    });
-    diagnostics
+    let follows = |i: usize, look: &Look| {
+        let is_of_types = OF_TYPES.contains(&look.code) || OF_CALLS.contains(&look.code);
+        let lambdas =
+            (is_of_types && i < MOST).then(|| look.names.lambdas_around(look.span())).into_iter().flatten();
+        let nodes = lambdas.filter_map(|site| look.names.callee(site)).chain(callee(look)).map(whole);
+        let mut nodes = nodes.filter(|node| !contains(*node, look.span()));
+        nodes.any(|node| is_broken(look.place.file, node))
+    };
+    let is_kept =
+        |(i, diagnostic): &(usize, Diagnostic)| texts.look(diagnostic).is_none_or(|look| !follows(*i, &look));
+    diagnostics.into_iter().enumerate().filter(is_kept).map(|(_, diagnostic)| diagnostic).collect()
 }
 
 /// The node of the same file whose call an error is about.

@@ -168,6 +168,15 @@ impl<'a> Names<'a> {
         values.find(|value| contains(*value, place))
     }
 
+    /// The calls whose argument is a lambda that a place lies in.
+    pub fn lambdas_around(&self, place: Span) -> impl Iterator<Item = &Site<'a>> {
+        self.sites.iter().filter(move |site| {
+            site.call.arguments.iter().any(|argument| {
+                matches!(argument.value.kind, ExprKind::Lambda { .. }) && contains(argument.value.span, place)
+            })
+        })
+    }
+
     /// How often the node of this file whose name stands here is called in this file.
     pub fn count_calls(&self, name: Span) -> usize {
         let of_node = |site: &&Site<'a>| self.callee(site).is_some_and(|node| node.name.span == name);
