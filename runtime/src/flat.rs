@@ -45,6 +45,7 @@ impl Slope {
     }
 
     /// At a place in pixels; the first pixel's centre is (0.5, 0.5).
+    #[cfg(feature = "gpu")]
     pub fn at(&self, x: f64, y: f64) -> [f32; 4] {
         [0, 1, 2, 3].map(|i| self.component(i, x, y))
     }

@@ -58,6 +58,7 @@ impl Request {
     ///
     /// # Errors
     /// The request asks for what can't be, or for more than there is memory for.
+    #[cfg(feature = "gpu")]
     pub(crate) fn picture(&self, program: &Program) -> Result<Picture, RenderError> {
         Ok(Picture { content: self.content(program)?, ..self.blank()? })
     }
@@ -75,7 +76,8 @@ impl Request {
     /// A blank picture of data.
     ///
     /// # Errors
-    /// As for [`Request::picture`].
+    /// The request asks for what can't be, or for more than there is memory for.
+    #[cfg(feature = "gpu")]
     pub(crate) fn blank(&self) -> Result<Picture, RenderError> {
         self.check()?;
         let count = self.size[0] as usize * self.size[1] as usize;
