@@ -374,7 +374,7 @@ pub struct Function {
     pub origin: Option<Origin>,
 }
 
-/// A function that the library made ahead, by its place in the library's list (see [`crate::ahead`]).
+/// A function that the library made ahead, by its place in the library's list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// As it is after checking, with the expressions it calls taken over.
