@@ -395,9 +395,11 @@ impl<'a> Checker<'a> {
         width: u8,
         place: Place,
     ) -> Option<Constant> {
-        let value = self.coerce_named(f, wire, (scalar, width), place, Some(&name.text))?;
-        let constant = f.builder.as_constant(value);
-        if constant.is_none() {
+        let value = self.coerce_named(f, wire, (scalar, width), place, Some(&name.text));
+        let constant = value.and_then(|value| f.builder.as_constant(value));
+        // A `let` that is no number may have made no value without anybody having said so.
+        let is_silent = self.diagnostics.is_empty() && f.waiting.is_empty();
+        if constant.is_none() && (value.is_some() || is_silent) {
             self.report(f, rates::param_not_constant(place, &name.text));
         }
         constant
