@@ -20,7 +20,9 @@ type Key = [Value; 3];
 /// Works out shared levels once, after differentiation.
 pub fn run(mut graph: Graph) -> Graph {
     let carried = carried(&graph);
-    for (function, carried) in graph.functions.iter_mut().zip(carried) {
+    let functions = graph.functions.iter_mut().zip(carried);
+    // The library's have been here before.
+    for (function, carried) in functions.filter(|(function, _)| function.origin.is_none()) {
         let shared = shared(function, carried);
         if !shared.is_empty() {
             *function = Sharing::new(function, shared).run();

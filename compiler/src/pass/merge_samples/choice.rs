@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 /// The function with everything merged that can be; none if there is nothing.
 pub fn merged(function: &Function, weights: &Weights) -> Option<Function> {
-    if !function.values.iter().any(|operation| matches!(operation, Operation::Select(..))) {
+    // The library's functions have been here before.
+    let has_choices = function.values.iter().any(|operation| matches!(operation, Operation::Select(..)));
+    if function.origin.is_some() || !has_choices {
         return None;
     }
     let plan = Plan::of(function, &Regions::of(function, weights), weights);
