@@ -1,9 +1,10 @@
-//! naga module to text. naga validates; its writer writes; our names replace its placeholders.
+//! naga module to text. naga validates; its writer writes; our names take the place of its placeholders.
 
 use crate::lower::Lowered;
-use memchr::memmem;
+use memchr::memmem::Finder;
 use naga::back::wgsl;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use std::sync::LazyLock;
 
 /// What the writer writes otherwise than it is to stand there.
 const REPLACED: [(&str, &str); 5] = [
@@ -24,15 +25,20 @@ const REPLACED: [(&str, &str); 5] = [
 pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&lowered.module).map_err(|error| describe(&error))?;
-    let text =
-        wgsl::write_string(&lowered.module, &info, wgsl::WriterFlags::empty()).map_err(|e| describe(&e))?;
-    Ok(lowered.names.apply(&replaced(&text), &lowered.results))
+    let mut writer =
+        wgsl::Writer::new(lowered.names.renaming(&lowered.results), wgsl::WriterFlags::empty());
+    writer.write(&lowered.module, &info).map_err(|error| describe(&error))?;
+    Ok(replaced(&writer.finish().finish()))
 }
+
+/// What finds them.
+static FINDERS: LazyLock<[Finder<'static>; REPLACED.len()]> =
+    LazyLock::new(|| REPLACED.map(|(from, _)| Finder::new(from)));
 
 /// The text with everything replaced that is to be.
 fn replaced(text: &str) -> String {
-    let places = REPLACED.iter().flat_map(|(from, to)| {
-        memmem::find_iter(text.as_bytes(), from).map(move |start| (start, start + from.len(), *to))
+    let places = FINDERS.iter().zip(REPLACED).flat_map(|(finder, (from, to))| {
+        finder.find_iter(text.as_bytes()).map(move |start| (start, start + from.len(), to))
     });
     let mut places: Vec<(usize, usize, &str)> = places.collect();
     places.sort_unstable();

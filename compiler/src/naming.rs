@@ -2,11 +2,12 @@
 //!
 //! The text writer renames whatever is used twice in a module, reserved, or ends in a digit. So it
 //! is only ever given placeholders (`z17z`), which it leaves alone, and the names of our choice
-//! replace them in the text it writes (see [`Names::apply`]).
+//! take their place as it writes (see [`Renaming`]).
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use smol_str::{SmolStr, format_smolstr};
 use std::collections::hash_map::Entry;
+use std::fmt;
 use std::ops::Range;
 
 /// A name that is legal and keeps its meaning: dots of imports become `_`, a trailing digit gets a
@@ -219,44 +220,18 @@ impl Names {
         self.0[range].iter().any(|name| is_of_module(&name.text, module))
     }
 
-    /// The text with placeholders replaced. `results` names the results of calls: `_e7` of the
-    /// nth function, which the writer names itself.
-    pub fn apply(&self, text: &str, results: &[FxHashMap<u32, SmolStr>]) -> String {
-        let mut out = String::with_capacity(text.len() * 3 / 2);
-        let mut functions = 0_usize;
-        let mut stored = FxHashSet::default();
-        // What stands before `done` is in `out`.
-        let mut done = 0;
-        let mut at = 0;
-        for start in memchr::memchr2_iter(b'z', b'_', text.as_bytes()) {
-            let Some((length, token)) = (start >= at).then(|| token_at(text.as_bytes(), start)).flatten()
-            else {
-                continue;
-            };
-            let place = start..start + length;
-            at = place.end;
-            let before = &text[done..place.start];
-            let results = results.get(functions.wrapping_sub(1));
-            let Some((name, kind)) = self.meaning(token, results) else { continue };
-            functions += usize::from(before.ends_with("fn "));
-            if let Some(before) = kind.undeclared(before)
-                && let Some((_, behind)) = text[at..].split_once('\n')
-            {
-                out.push_str(before.trim_end_matches(' '));
-                // The writer parts variables from the rest by an empty line.
-                let behind = if out.ends_with("{\n") { behind.trim_start_matches('\n') } else { behind };
-                at = text.len() - behind.len();
-            } else {
-                out.push_str(before);
-                if kind == Kind::Stored && stored.insert(&text[place]) {
-                    out.push_str("var ");
-                }
-                out.push_str(name);
-            }
-            done = at;
+    /// What the writer is given to write to. `results` names the results of calls: `_e7` of the nth
+    /// function, which the writer names itself.
+    pub fn renaming<'a>(&'a self, results: &'a [FxHashMap<u32, SmolStr>]) -> Renaming<'a> {
+        Renaming {
+            names: self,
+            results,
+            // As long as the text of a small graph.
+            text: String::with_capacity(8192),
+            functions: 0,
+            stored: FxHashSet::default(),
+            left_out: LeftOut::Nothing,
         }
-        out.push_str(&text[done..]);
-        out
     }
 
     /// The name that a token stands for, and how it is declared.
@@ -272,6 +247,80 @@ impl Names {
     }
 }
 
+/// Takes what the writer writes, piece by piece; a name is a piece of its own. Placeholders become
+/// the names that they stand for.
+pub struct Renaming<'a> {
+    names: &'a Names,
+    results: &'a [FxHashMap<u32, SmolStr>],
+    text: String,
+    /// How many functions have begun.
+    functions: usize,
+    /// The placeholders of variables that have been stored to.
+    stored: FxHashSet<SmolStr>,
+    left_out: LeftOut,
+}
+
+/// What is left out of what comes next.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum LeftOut {
+    Nothing,
+    /// The rest of a declaration.
+    Line,
+    /// The empty line by which the writer parts variables from the rest.
+    EmptyLine,
+}
+
+impl Renaming<'_> {
+    /// The text.
+    pub fn finish(self) -> String {
+        self.text
+    }
+
+    /// What of a piece is not left out.
+    fn rest<'p>(&mut self, mut piece: &'p str) -> &'p str {
+        if self.left_out == LeftOut::Line {
+            let Some((_, behind)) = piece.split_once('\n') else { return "" };
+            let is_first = self.text.ends_with("{\n");
+            self.left_out = if is_first { LeftOut::EmptyLine } else { LeftOut::Nothing };
+            piece = behind;
+        }
+        if self.left_out == LeftOut::EmptyLine {
+            piece = piece.trim_start_matches('\n');
+            if !piece.is_empty() {
+                self.left_out = LeftOut::Nothing;
+            }
+        }
+        piece
+    }
+
+    fn name(&mut self, placeholder: &str, name: &str, kind: Kind) {
+        self.functions += usize::from(self.text.ends_with("fn "));
+        if let Some(before) = kind.undeclared(&self.text) {
+            let length = before.trim_end_matches(' ').len();
+            self.text.truncate(length);
+            self.left_out = LeftOut::Line;
+            return;
+        }
+        if kind == Kind::Stored && self.stored.insert(placeholder.into()) {
+            self.text.push_str("var ");
+        }
+        self.text.push_str(name);
+    }
+}
+
+impl fmt::Write for Renaming<'_> {
+    fn write_str(&mut self, piece: &str) -> fmt::Result {
+        let piece = if self.left_out == LeftOut::Nothing { piece } else { self.rest(piece) };
+        let names = self.names;
+        let results = self.results.get(self.functions.wrapping_sub(1));
+        match token(piece.as_bytes()).and_then(|token| names.meaning(token, results)) {
+            Some((name, kind)) => self.name(piece, name, kind),
+            None => self.text.push_str(piece),
+        }
+        Ok(())
+    }
+}
+
 /// Makes a text the placeholder of that number.
 fn write_placeholder(text: &mut String, number: usize) {
     text.clear();
@@ -282,12 +331,12 @@ fn write_placeholder(text: &mut String, number: usize) {
 
 /// Makes a placeholder the one of another number.
 pub fn renumber(placeholder: &mut String, other: impl Fn(usize) -> usize) {
-    if let Some((_, Token::Placeholder(number))) = token(placeholder.as_bytes()) {
+    if let Some(Token::Placeholder(number)) = token(placeholder.as_bytes()) {
         write_placeholder(placeholder, other(number));
     }
 }
 
-/// A name in the text that is to be replaced.
+/// A name that is to be replaced.
 enum Token {
     /// `z17z`
     Placeholder(usize),
@@ -295,33 +344,20 @@ enum Token {
     Result(u32),
 }
 
-/// The token at a place in the text, and its length; none in the middle of a name.
-fn token_at(text: &[u8], start: usize) -> Option<(usize, Token)> {
-    if text[..start].last().is_some_and(is_part) { None } else { token(&text[start..]) }
-}
-
-/// The token that a text begins with, and its length.
+/// The token that a text is.
 #[inline]
-fn token(text: &[u8]) -> Option<(usize, Token)> {
-    let (numbered, is_placeholder) = match text {
-        [b'z', numbered @ ..] => (numbered, true),
-        [b'_', b'e', numbered @ ..] => (numbered, false),
+fn token(text: &[u8]) -> Option<Token> {
+    let (digits, is_placeholder) = match text {
+        [b'z', digits @ .., b'z'] => (digits, true),
+        [b'_', b'e', digits @ ..] => (digits, false),
         _ => return None,
     };
-    let digits = numbered.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    let (digits, behind) = numbered.split_at(digits);
-    let behind = match behind {
-        [b'z', behind @ ..] if is_placeholder => behind,
-        behind if !is_placeholder => behind,
-        _ => return None,
-    };
-    if digits.is_empty() || behind.first().is_some_and(is_part) {
+    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
         return None;
     }
     let add = |number: u32, digit: &u8| number.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
     let number = digits.iter().fold(0, add);
-    let token = if is_placeholder { Token::Placeholder(number as usize) } else { Token::Result(number) };
-    Some((text.len() - behind.len(), token))
+    Some(if is_placeholder { Token::Placeholder(number as usize) } else { Token::Result(number) })
 }
 
 /// Whether a byte can stand in a name.
@@ -332,6 +368,7 @@ fn is_part(byte: &u8) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fmt::Write as _;
 
     #[test]
     fn names_are_legal_and_distinct() {
@@ -352,8 +389,9 @@ mod tests {
         let mut names = Names::default();
         let cell = names.placeholder("cell");
         let at = names.placeholder("at");
-        let text = format!("let {cell} = 1e-3f + {at}.x * 0x1fu;");
-        assert_eq!(names.apply(&text, &[]), "let cell = 1e-3f + at.x * 0x1fu;");
+        let mut renaming = names.renaming(&[]);
+        write!(renaming, "let {cell} = 1e-3f + {at}.x * 0x1fu;").unwrap();
+        assert_eq!(renaming.finish(), "let cell = 1e-3f + at.x * 0x1fu;");
     }
 
     #[test]
@@ -362,15 +400,17 @@ mod tests {
         let variable = names.placeholder("sum");
         let value = names.alias("sum");
         let next = names.placeholder("next");
-        let text = format!("{{\n    let {value} = {variable};\n    let {next} = {value} + 1;\n}}\n");
-        assert_eq!(names.apply(&text, &[]), "{\n    let next = sum + 1;\n}\n");
+        let mut renaming = names.renaming(&[]);
+        write!(renaming, "{{\n    let {value} = {variable};\n    let {next} = {value} + 1;\n}}\n").unwrap();
+        assert_eq!(renaming.finish(), "{\n    let next = sum + 1;\n}\n");
     }
 
     #[test]
     fn variables_are_declared_where_they_are_first_stored_to() {
         let mut names = Names::default();
         let sum = names.stored("sum");
-        let text = format!("{{\n    var {sum}: f32;\n\n    {sum} = 1f;\n    {sum} = {sum} + 1f;\n}}\n");
-        assert_eq!(names.apply(&text, &[]), "{\n    var sum = 1f;\n    sum = sum + 1f;\n}\n");
+        let mut renaming = names.renaming(&[]);
+        write!(renaming, "{{\n    var {sum}: f32;\n\n    {sum} = 1f;\n    {sum} = {sum} + 1f;\n}}\n").unwrap();
+        assert_eq!(renaming.finish(), "{\n    var sum = 1f;\n    sum = sum + 1f;\n}\n");
     }
 }
