@@ -56,6 +56,36 @@ const TEXTURES: &[(&str, &str, usize)] = &[
         color = mix(win.color, win.other, 0.5)",
         2,
     ),
+    (
+        "early",
+        "let win = fold (best = -1.0, color = vec4(0.0)) for i in 0..9 while best < 0.9 {
+            let r = hash(ifloor(uv * 9.0), seed: i).x
+            best  = max(r, best)
+            color = if r > best { ONE.sample(uv * r) } else { color }
+        }
+        color = win.color",
+        1,
+    ),
+    // One condition, whose inputs are those of two loops: their samples stay in them.
+    (
+        "two_early",
+        "let win = fold (best = -1.0, color = vec4(0.0)) for i in 0..9 while best < 0.9 {
+            let r = hash(ifloor(uv * 9.0), seed: i).x
+            best  = max(r, best)
+            color = if r > best { ONE.sample(uv * r) } else { color }
+        }
+        let sum = fold (best = -1.0, color = vec4(0.0)) for i in 0..9 while best < 0.9 {
+            best  = best + 0.3 * uv.x
+            color = color * 0.5 + 0.1
+        }
+        let last = fold (best = -1.0, color = vec4(0.0)) for i in 0..9 while best < 0.9 {
+            let r = hash(ifloor(uv * 9.0), seed: i + 100).x
+            best  = best + r
+            color = if r < 0.5 { ONE.sample(uv + r, lod: r) } else { color }
+        }
+        color = (win.color + sum.color + last.color) / 3.0",
+        2,
+    ),
 ];
 
 /// A loop, and a node that stays a function.
@@ -71,7 +101,7 @@ node twice(p: image, at: vec2) -> (sum: vec4) {
 ";
 
 /// What keeps a winner's sample where it is: something else reads it.
-const READ: &str = " while color.w > -1.0 {";
+const READ: &str = "color.w > -1.0 {";
 
 fn program(name: &str, body: &str, is_merged: bool) -> String {
     let mut body = body.to_owned();
@@ -79,7 +109,8 @@ fn program(name: &str, body: &str, is_merged: bool) -> String {
         body = body.replace(word, if is_merged { "one" } else { twin });
     }
     if !is_merged && body.contains("color = vec4") {
-        body = body.replacen(" {\n", &format!("{READ}\n"), 1);
+        let joined = if body.contains(" while ") { "&&" } else { "while" };
+        body = body.replacen(" {\n", &format!(" {joined} {READ}\n"), 1);
         body = body.replacen("if uv.x < 0.1", "if other.w < -1.0 || uv.x < 0.1", 1);
     }
     let images =

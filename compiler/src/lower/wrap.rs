@@ -3,7 +3,7 @@
 use super::body::Body;
 use super::types::{Types, numeric, scalar};
 use super::{Lowering, Member};
-use crate::graph::{Scalar, Type, ViewId};
+use crate::graph::{Scalar, Slot, Type, Value, ViewId};
 use crate::manifest::{Form, Source};
 use crate::naming::{Scope, camel_case};
 use naga::{AddressSpace, Binding, Expression, GlobalVariable, Handle, Literal, Span};
@@ -149,6 +149,30 @@ impl Lowering<'_> {
         body.call(self.callee(entry).handle, arguments, "result")
     }
 
+    /// Adds an argument that the rasteriser gives; its number.
+    fn varying(&mut self, function: &mut naga::Function, name: SmolStr, ty: Type, location: u32) -> u32 {
+        let binding = Some(at_location(location, ty.is_float()));
+        let ty = self.types.get(&mut self.module.types, ty);
+        let name = Some(self.names.placeholder(name));
+        function.arguments.push(naga::FunctionArgument { name, ty, binding });
+        function.arguments.len() as u32 - 1
+    }
+
+    /// The type of what an entry point gives: every output widened to four floats.
+    fn targets(&mut self, outputs: &[(Slot, Value)]) -> (Handle<naga::Type>, Option<Binding>) {
+        let floats = Types::of(&mut self.module.types, numeric(naga::Scalar::F32, 4));
+        if outputs.len() <= 1 {
+            return (floats, Some(at_location(0, true)));
+        }
+        let members = outputs.iter().enumerate().map(|(i, (slot, _))| Member {
+            name: slot.name.clone(),
+            ty: floats,
+            binding: Some(at_location(i as u32, true)),
+        });
+        let name = camel_case(&format!("{}_targets", self.prefix));
+        (self.structure(&name, members.collect()), None)
+    }
+
     /// `@fragment fn NAME(@location(0) uv: vec2<f32>) -> …`, every output widened to four floats.
     fn entry_point(&mut self, name: &str, globals: &Globals) {
         let entry = self.graph.function(self.graph.entry());
@@ -160,35 +184,16 @@ impl Lowering<'_> {
                 varying.push(None);
                 continue;
             };
-            let ty = self.types.get(&mut self.module.types, slot.ty);
-            varying.push(Some(function.arguments.len() as u32));
-            let placeholder = self.names.placeholder(scope.name(&slot.name));
-            let binding = Some(at_location(location, slot.ty.is_float()));
-            function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding });
+            let name = scope.name(&slot.name);
+            varying.push(Some(self.varying(&mut function, name, slot.ty, location)));
         }
         let mut given = Vec::new();
         for (input, gradient) in self.gradients(true) {
             let Source::Varying(location) = gradient.source else { continue };
-            let ty = self.types.get(&mut self.module.types, entry.inputs[input].ty);
-            given.push(function.arguments.len() as u32);
-            let placeholder = self.names.placeholder(scope.name(&gradient.name));
-            let binding = Some(at_location(location, true));
-            function.arguments.push(naga::FunctionArgument { name: Some(placeholder), ty, binding });
+            let name = scope.name(&gradient.name);
+            given.push(self.varying(&mut function, name, entry.inputs[input].ty, location));
         }
-        let floats = Types::of(&mut self.module.types, numeric(naga::Scalar::F32, 4));
-        let several = entry.outputs.len() > 1;
-        let result = if several {
-            let members = entry.outputs.iter().enumerate().map(|(i, (slot, _))| Member {
-                name: slot.name.clone(),
-                ty: floats,
-                binding: Some(at_location(i as u32, true)),
-            });
-            let name = camel_case(&format!("{}_targets", self.prefix));
-            self.structure(&name, members.collect())
-        } else {
-            floats
-        };
-        let binding = (!several).then(|| at_location(0, true));
+        let (result, binding) = self.targets(&entry.outputs);
         function.result = Some(naga::FunctionResult { ty: result, binding });
         let mut body = Body::new(&mut function, scope);
         let mut inputs: Vec<Handle<Expression>> = entry
@@ -207,7 +212,7 @@ impl Lowering<'_> {
             .iter()
             .enumerate()
             .map(|(i, (slot, _))| {
-                let value = if several {
+                let value = if entry.outputs.len() > 1 {
                     body.add(Expression::AccessIndex { base: value, index: i as u32 })
                 } else {
                     value

@@ -45,11 +45,11 @@ impl Winner {
 
 /// Moves samples of winners out of all loops.
 pub fn run(mut graph: Graph) -> Graph {
-    let winners = winners(&graph);
+    let mut winners = winners(&graph);
     if winners.iter().all(Vec::is_empty) {
         return graph;
     }
-    let bodies = bodies(&graph);
+    let bodies = bodies(&graph, &mut winners);
     let moved = (0..graph.functions.len()).map(|place| {
         let function = &graph.functions[place];
         let body = bodies[place].unwrap_or(place);
@@ -65,32 +65,53 @@ pub fn run(mut graph: Graph) -> Graph {
     graph
 }
 
-/// For each condition of a loop the body that it goes with.
-fn bodies(graph: &Graph) -> Vec<Option<usize>> {
-    let mut bodies = vec![None; graph.functions.len()];
-    for operation in graph.functions.iter().flat_map(|function| &function.values) {
-        if let Operation::Fold(fold) = operation
-            && let Some(condition) = fold.condition
-        {
-            bodies[condition.0 as usize] = Some(fold.body.0 as usize);
+/// For each condition of a loop the body that it goes with. Its inputs are that body's, so where a
+/// function is used otherwise too, the winners stay.
+fn bodies(graph: &Graph, winners: &mut [Vec<Winner>]) -> Vec<Option<usize>> {
+    let mut bodies: Vec<Option<usize>> = vec![None; graph.functions.len()];
+    for fold in folds(graph) {
+        let Some(condition) = fold.condition else { continue };
+        let body = fold.body.0 as usize;
+        let first = *bodies[condition.0 as usize].get_or_insert(body);
+        if first != body {
+            winners[first].clear();
+            winners[body].clear();
+        }
+    }
+    let called = graph.functions.iter().flat_map(|function| &function.values);
+    let called = called.filter_map(|operation| match operation {
+        Operation::Call(callee, _) => Some(*callee),
+        Operation::Fold(fold) => Some(fold.body),
+        _ => None,
+    });
+    for id in called {
+        let place = id.0 as usize;
+        if let Some(body) = bodies[place] {
+            winners[body].clear();
+            winners[place].clear();
         }
     }
     bodies
 }
 
+fn folds(graph: &Graph) -> impl Iterator<Item = &Fold> {
+    let operations = graph.functions.iter().flat_map(|function| &function.values);
+    operations.filter_map(|operation| match operation {
+        Operation::Fold(fold) => Some(&**fold),
+        _ => None,
+    })
+}
+
 /// The winners of each body, in order.
 fn winners(graph: &Graph) -> Vec<Vec<Winner>> {
     let mut winners: Vec<Option<Vec<Winner>>> = vec![None; graph.functions.len()];
-    for function in &graph.functions {
-        for operation in &function.values {
-            let Operation::Fold(fold) = operation else { continue };
-            let found = of_fold(graph, fold);
-            let known = &mut winners[fold.body.0 as usize];
-            match known {
-                // One body, several loops: what one of them can't do without stays.
-                Some(known) => known.retain(|winner| found.contains(winner)),
-                None => *known = Some(found),
-            }
+    for fold in folds(graph) {
+        let found = of_fold(graph, fold);
+        let known = &mut winners[fold.body.0 as usize];
+        match known {
+            // One body, several loops: what one of them can't do without stays.
+            Some(known) => known.retain(|winner| found.contains(winner)),
+            None => *known = Some(found),
         }
     }
     winners.into_iter().map(Option::unwrap_or_default).collect()
@@ -115,9 +136,11 @@ fn uses(function: &Function) -> Vec<u32> {
     uses
 }
 
+/// The inputs that something is made of; a function may have others.
 fn read_inputs(function: &Function) -> Vec<u32> {
-    let inputs = function.values.iter().filter_map(|operation| match operation {
-        Operation::Input(i) => Some(*i),
+    let uses = uses(function);
+    let inputs = function.iter().filter_map(|(value, operation)| match operation {
+        Operation::Input(i) if uses[value.0 as usize] > 0 => Some(*i),
         _ => None,
     });
     inputs.collect()
