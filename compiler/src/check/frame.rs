@@ -137,6 +137,15 @@ impl<'a> Step<'a> {
         one.into_iter().chain(several.iter().map(|name| name.text.as_str()))
     }
 
+    /// The ends of a param's range.
+    pub(super) fn ends(&self) -> Vec<&'a Expr> {
+        let Target::Param(item) = self.target else { return Vec::new() };
+        match &item.kind {
+            ItemKind::Param { range: Some(range), .. } => vec![&*range.start, &*range.end],
+            _ => Vec::new(),
+        }
+    }
+
     pub(super) fn span(&self) -> Span {
         self.value.span
     }

@@ -397,9 +397,7 @@ impl<'a> Checker<'a> {
     ) -> Option<Constant> {
         let value = self.coerce_named(f, wire, (scalar, width), place, Some(&name.text));
         let constant = value.and_then(|value| f.builder.as_constant(value));
-        // A `let` that is no number may have made no value without anybody having said so.
-        let is_silent = self.diagnostics.is_empty() && f.waiting.is_empty();
-        if constant.is_none() && (value.is_some() || is_silent) {
+        if constant.is_none() && value.is_some() {
             self.report(f, rates::param_not_constant(place, &name.text));
         }
         constant

@@ -32,6 +32,11 @@ impl<'a> Free<'a> {
         self.expr(expr);
     }
 
+    /// Of a further expression too.
+    pub fn add(&mut self, expr: &'a Expr) {
+        self.expr(expr);
+    }
+
     /// Of a node's body: its inputs and wires are not free in it.
     pub fn of_node(node: &'a Node) -> Free<'a> {
         let mut free = Free::default();

@@ -126,6 +126,7 @@ impl<'a> Checker<'a> {
         let mut needs = order::Needs::default();
         for step in &f.steps {
             free.read(step.value);
+            step.ends().into_iter().for_each(|end| free.add(end));
             let through = reach.as_mut().map(|reach| {
                 // A node may be passed by its bare name.
                 reach.values(free.calls.iter().chain(&free.values).copied().collect())
@@ -201,7 +202,8 @@ fn let_of(statement: &Statement, name: &str) -> Option<Span> {
 
 /// Where a step reads one of these names.
 fn read(step: &Step, names: &[&str]) -> Option<Span> {
-    let free = order::Free::of(step.value);
+    let mut free = order::Free::of(step.value);
+    step.ends().into_iter().for_each(|end| free.add(end));
     let found = free.values.iter().zip(&free.places).find(|(name, _)| names.contains(name));
     found.map(|(_, place)| *place)
 }
