@@ -25,8 +25,7 @@ const REPLACED: [(&str, &str); 5] = [
 pub fn wgsl(lowered: &Lowered) -> Result<String, String> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&lowered.module).map_err(|error| describe(&error))?;
-    let mut writer =
-        wgsl::Writer::new(lowered.names.renaming(&lowered.results), wgsl::WriterFlags::empty());
+    let mut writer = wgsl::Writer::new(lowered.names.renaming(&lowered.results), wgsl::WriterFlags::empty());
     writer.write(&lowered.module, &info).map_err(|error| describe(&error))?;
     Ok(replaced(&writer.finish().finish()))
 }

@@ -410,7 +410,8 @@ mod tests {
         let mut names = Names::default();
         let sum = names.stored("sum");
         let mut renaming = names.renaming(&[]);
-        write!(renaming, "{{\n    var {sum}: f32;\n\n    {sum} = 1f;\n    {sum} = {sum} + 1f;\n}}\n").unwrap();
+        write!(renaming, "{{\n    var {sum}: f32;\n\n    {sum} = 1f;\n    {sum} = {sum} + 1f;\n}}\n")
+            .unwrap();
         assert_eq!(renaming.finish(), "{\n    var sum = 1f;\n    sum = sum + 1f;\n}\n");
     }
 }

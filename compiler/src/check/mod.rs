@@ -28,6 +28,7 @@ mod prepared;
 mod range;
 mod render;
 mod special;
+mod step;
 mod texture;
 mod types;
 mod view;
@@ -38,7 +39,7 @@ pub use prepared::{Prepared, prepare};
 pub use texture::textures;
 pub use wire::Key;
 
-use crate::diagnostic::{Diagnostic, Place, limits, names, types as type_errors};
+use crate::diagnostic::{Diagnostic, Place, limits, names};
 use crate::graph::{
     Builder, Constant, Function, FunctionId, Graph, Param, ParamId, PassGraph, ResourceView, Type, ViewId,
 };
@@ -50,7 +51,7 @@ use globals::Global;
 use operator::Overload;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
-use texgraph_grammar::syntax::{BinaryOperator, Expr, Input, ItemKind, Name, Node, Pattern, Span};
+use texgraph_grammar::syntax::{BinaryOperator, Input, ItemKind, Node, Span};
 use types::Declared;
 use wire::{ArgumentKey, NodeWire, ResourceWire, Wire};
 
@@ -275,133 +276,6 @@ impl<'a> Checker<'a> {
         f.key = Some(key);
         self.plan_node(&mut f, node);
         f
-    }
-
-    /// Runs steps until the function is done (true) or one has to wait (false).
-    fn step(&mut self, f: &mut Frame<'a>) -> bool {
-        while let Some(step) = f.order.get(f.next) {
-            let Step { target, value } = f.steps[*step];
-            let (mark, failed, unknown) = (self.diagnostics.len(), f.failed, f.unknown.len());
-            f.current = target.name();
-            let wire = match target {
-                Target::Render(item) => self.render_node(f, item),
-                _ => self.expr(f, value),
-            };
-            if !f.waiting.is_empty() {
-                // What was said while waiting may be a consequence of it; the step runs again.
-                self.diagnostics.truncate(mark);
-                f.unknown.truncate(unknown);
-                f.failed = failed;
-                return false;
-            }
-            self.finish_step(f, target, value, wire);
-            if !f.waiting.is_empty() {
-                // The ends of a param's range may call nodes too.
-                self.diagnostics.truncate(mark);
-                f.unknown.truncate(unknown);
-                f.failed = failed;
-                return false;
-            }
-            f.next += 1;
-            f.progress.clear();
-            if self.values + f.builder.function().values.len() > limits::MAX_VALUES {
-                // Said once; the functions that wait for this one are over the bound too.
-                f.failed = true;
-                if std::mem::replace(&mut self.overfull, true) {
-                    return true;
-                }
-                let place = self.place(f, value.span);
-                let name = f.builder.function().name.clone();
-                self.report(f, limits::too_many_values(place, &name));
-                return true;
-            }
-        }
-        true
-    }
-
-    fn finish_step(&mut self, f: &mut Frame<'a>, target: Target<'a>, value: &'a Expr, wire: Wire) {
-        let place = self.place(f, value.span);
-        match target {
-            Target::Let(Pattern::Name(name)) => self.bind(f, name, wire),
-            Target::Let(Pattern::Record(names, span)) => {
-                let place = self.place(f, *span);
-                self.take_apart(f, names, wire, place);
-            }
-            Target::Output(name) => self.set_output(f, name, wire, place),
-            Target::Global(name, doc) => self.set_global(f, name, doc, wire, place),
-            Target::Param(item) => self.set_param(f, item, wire, place),
-            Target::Default(input) => self.check_default(f, input, wire, place),
-            Target::Render(_) => {
-                let name = f.key.as_ref().and_then(|key| key.wire.clone());
-                self.output_parts(f, name.as_deref().unwrap_or("value"), wire, place);
-            }
-        }
-    }
-
-    fn bind(&mut self, f: &mut Frame<'a>, name: &'a Name, wire: Wire) {
-        if let Wire::Value(value) = wire {
-            f.builder.name(value, name.text.as_str());
-        }
-        // A bare word that reaches a wire is a name that nobody declared.
-        let wire =
-            if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
-        let is_doubtful = f.doubtful.contains(name.text.as_str());
-        f.failed |= is_doubtful;
-        let wire = if is_doubtful { Wire::Unknown } else { wire };
-        if let Some(scope) = f.scopes.last_mut()
-            && !f.repeated.contains(&name.span.start)
-        {
-            scope.insert(&name.text, wire);
-        }
-    }
-
-    fn take_apart(&mut self, f: &mut Frame<'a>, names: &'a [Name], wire: Wire, place: Place) {
-        let wire = if let Wire::Word(word, at) = wire { self.unknown_value(f, &word, at) } else { wire };
-        let outputs = match &wire {
-            Wire::Record(outputs) => Rc::clone(outputs),
-            Wire::Unknown => Rc::new(Vec::new()),
-            _ => {
-                self.report(f, type_errors::not_a_record(place));
-                Rc::new(Vec::new())
-            }
-        };
-        if matches!(wire, Wire::Record(_)) && outputs.len() != names.len() {
-            let known: Vec<String> = outputs.iter().map(|(name, _)| name.to_string()).collect();
-            self.report(f, type_errors::destructuring(place, names.len(), &known));
-            // The outputs that got no name may be read by their own: that is the same slip.
-            known.iter().for_each(|name| f.unknown.insert(name));
-        }
-        let fits = outputs.len() == names.len();
-        for (i, name) in names.iter().enumerate() {
-            let output = outputs.get(i).filter(|_| fits);
-            let wire = output.map_or(Wire::Unknown, |(_, wire)| wire.clone());
-            self.bind(f, name, wire);
-        }
-    }
-
-    fn set_output(&mut self, f: &mut Frame<'a>, name: &'a Name, wire: Wire, place: Place) {
-        let declared = f.node.and_then(|node| node.outputs.iter().find(|o| o.name.text == name.text));
-        if f.doubtful.contains(name.text.as_str()) {
-            f.failed = true;
-            return self.bind(f, name, Wire::Unknown);
-        }
-        let wire =
-            match declared.map(|output| types::resolve(&output.ty, &f.dims, self.modules[f.module].file)) {
-                Some(Ok(Declared::Vector(scalar, width))) => self
-                    .coerce_named(f, &wire, (scalar, width), place, Some(&name.text))
-                    .map_or(Wire::Unknown, Wire::Value),
-                Some(Ok(Declared::Matrix(size))) => {
-                    self.coerce_matrix(f, &wire, size, place).map_or(Wire::Unknown, Wire::Matrix)
-                }
-                Some(Ok(_)) => {
-                    let ty = declared.map(|o| types::show(&o.ty)).unwrap_or_default();
-                    let place = self.place(f, declared.map_or(name.span, |o| o.ty.span));
-                    self.report(f, type_errors::type_not_allowed(place, &ty, "an output"))
-                }
-                Some(Err(diagnostic)) => self.report(f, diagnostic),
-                None => Wire::Unknown,
-            };
-        self.bind(f, name, wire);
     }
 
     /// Puts a finished node among the functions: the equal one there is already, or a new one.
