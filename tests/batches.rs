@@ -54,7 +54,7 @@ fn numbered(graph: &Graph, manifest: &Manifest, request: &Request) -> Graph {
                     let param = manifest.params.iter().find(|param| param.name == *name);
                     param.map(|param| constant(&settings.value(param)))
                 }
-                Operation::Derivative(of, axis) => match function.values[of.0 as usize] {
+                Operation::Derivative(of, axis, _) => match function.values[of.0 as usize] {
                     Operation::Input(n) => Some(derivative(&manifest.inputs[n as usize], axis, request)),
                     _ => None,
                 },

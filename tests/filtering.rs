@@ -34,7 +34,7 @@ fn main() {
     let arguments = Arguments::from_args();
     let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
     let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
-    let tests: [(&str, Test); 9] = [
+    let tests: [(&str, Test); 10] = [
         ("copies_of_one_pattern_are_the_repeated_image", copies_are_the_repeated_image),
         ("a_wrapped_pattern_is_the_repeated_image", wrapped_is_the_repeated_image),
         ("the_level_has_no_seam", the_level_has_no_seam),
@@ -43,6 +43,7 @@ fn main() {
         ("far_tiles_become_the_mean", far_tiles_become_the_mean),
         ("levels_are_those_of_the_filter", levels_are_those_of_the_filter),
         ("levels_count_on_anisotropy", levels_count_on_anisotropy),
+        ("a_sampled_value_changes_as_it_is_drawn", sampled_values_change_as_drawn),
         ("a_ramp_is_the_mean_over_a_pixel", a_ramp_is_the_mean_over_a_pixel),
     ];
     let mut trials = vec![Trial::test("anisotropic_samples_keep_their_gradient", keep_their_gradient)];
@@ -335,6 +336,72 @@ texture t(uv: vec2) -> (height: float) {
         }
     }
     Ok(())
+}
+
+/// `dx` and `dy` of what came out of a sample are what the pixels to the right and below have more:
+/// through arithmetic, nodes and loops, in a node that is told the value, and with levels and layers.
+fn sampled_values_change_as_drawn(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let head = r#"
+let one   = image("one.png")
+let tiles = patterns("tiles.png", grid: ivec2(2, 2))
+node twice(p: vec2) -> (sum: float) {
+    let first = one.sample(p)
+    sum       = first.r + 0.3 * first.g + one.sample(p * 0.5, lod: 1.0).b
+}
+node across(v: float) -> (change: float) {
+    let half = v * 0.5
+    change   = dx(half + v) / 1.5
+}
+node down(v: float) -> (change: float) {
+    let half = v * 0.5
+    change   = dy(half + v) / 1.5
+}
+node total(p: vec2) -> (sum: float) {
+    sum = fold (sum = 0.0) for i in 0..7 { sum = sum * 0.5 + twice(p * (1.0 + 0.1 * i)) }
+}
+"#;
+    let values = [
+        "one.sample(uv).r",
+        "2.0 * one.sample(uv * 0.7).r - vec3(one.sample(uv).gb, uv.y).yzx.y",
+        "twice(uv)",
+        "total(uv)",
+        "tiles.layers.sample(uv * 0.9, layer: 2).g",
+        "if uv.x < 9.0 { one.sample(uv.yx).r } else { 0.0 }",
+    ];
+    for value in values {
+        for (change, step) in [("dx(v)", 1), ("dy(v)", SIDE), ("across(v)", 1), ("down(v)", SIDE)] {
+            let source = |given: &str| {
+                format!("{head}texture t(uv: vec2) -> (given: float) {{ let v = {value}\n given = {given} }}")
+            };
+            // Where it is minified a GPU has its own level for a sample that stands alone.
+            let pixels = if matches!(renderer, Renderer::Cpu) { [130.0, 9.1] } else { [130.0, 32.0] };
+            let requests = pixels.map(view);
+            let drawn = draw(renderer, &loaded(folder.path(), &source("v"))?, &requests)?;
+            let changes = draw(renderer, &loaded(folder.path(), &source(change))?, &requests)?;
+            for (drawn, changes) in drawn.iter().zip(&changes) {
+                let mut most = 0.0_f32;
+                for i in inner() {
+                    let there = drawn.pixels[i + step as usize][0] - drawn.pixels[i][0];
+                    let found = changes.pixels[i][0];
+                    most = most.max(there.abs());
+                    if (there - found).abs() > 2e-3 {
+                        return Err(format!("{change} of {value} at {i}: {found}, drawn {there}").into());
+                    }
+                }
+                if most < 0.02 {
+                    return Err(format!("{value} proves nothing: it changes by {most}").into());
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The pixels that have one to the right and one below.
+fn inner() -> impl Iterator<Item = usize> {
+    let side = SIDE as usize;
+    (0..side - 1).flat_map(move |y| (0..side - 1).map(move |x| y * side + x))
 }
 
 /// What a ramp gives for a pixel is the mean of what it gives for 32 places across it, but for the

@@ -195,7 +195,7 @@ fn taken(entry: &graph::Function, is_bake: bool, options: &Options) -> Gradients
 /// The derivatives that an entry reads: input and axis.
 fn derivatives(entry: &graph::Function) -> impl Iterator<Item = (usize, graph::Axis)> {
     entry.values.iter().filter_map(|operation| {
-        let Operation::Derivative(of, axis) = operation else { return None };
+        let Operation::Derivative(of, axis, _) = operation else { return None };
         let Operation::Input(input) = entry.operation(*of) else { return None };
         Some((*input as usize, *axis))
     })

@@ -2,8 +2,8 @@
 
 use texgraph_compiler::graph::evaluate::evaluate;
 use texgraph_compiler::graph::{
-    Axis, Builder, Constant, Fold, Function, FunctionId, Graph, Level, Operation, Param, ParamId, Scalar,
-    Slot, Texel, Type, Value, View, ViewDimension, ViewId,
+    Axis, Builder, Constant, Fold, Function, FunctionId, Graph, Level, Operation, Param, ParamId, Sampled,
+    Scalar, Slot, Texel, Type, Value, View, ViewDimension, ViewId,
 };
 use texgraph_compiler::intrinsic::{
     ADD, ADD_INT, COS, DIVIDE, EXP, LESS, LESS_INT, MULTIPLY, MULTIPLY_INT, SIN, SUBTRACT, TO_FLOAT,
@@ -72,7 +72,7 @@ fn closed(mut graph: Graph) -> Graph {
                 Operation::Param(id) => {
                     function.values[v] = Operation::Constant(graph.params[id.0 as usize].default);
                 }
-                Operation::Derivative(of, axis) => {
+                Operation::Derivative(of, axis, _) => {
                     let Operation::Input(i) = *function.operation(of) else { panic!("it is of an input") };
                     let name = format!("{}_d{axis:?}", function.inputs[i as usize].name).to_lowercase();
                     function.values[v] = Operation::Input(function.inputs.len() as u32);
@@ -131,7 +131,7 @@ fn with_derivatives(b: &mut Builder, values: Vec<Value>) -> Vec<Value> {
     for value in values {
         let ty = b.ty(value);
         for axis in [Axis::X, Axis::Y] {
-            all.push(b.push(Operation::Derivative(value, axis), ty));
+            all.push(b.push(Operation::Derivative(value, axis, Sampled::Constant), ty));
         }
     }
     all
@@ -248,7 +248,8 @@ fn derivatives_inside_a_body_are_those_of_each_step() {
     let inputs = [("x", FLOAT), ("sum", FLOAT), ("slope", VEC2), ("step", INT)];
     let body = function("body", &inputs, |b, v| {
         let sine = b.builtin(SIN, &[v[0]]);
-        let slopes = [Axis::X, Axis::Y].map(|axis| b.push(Operation::Derivative(sine, axis), FLOAT));
+        let slopes = [Axis::X, Axis::Y]
+            .map(|axis| b.push(Operation::Derivative(sine, axis, Sampled::Constant), FLOAT));
         let slopes = b.compose(&slopes);
         let growth = float(b, 1.3);
         let next = b.builtin(MULTIPLY, &[v[0], growth]);

@@ -5,7 +5,7 @@ use super::types;
 use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, types as errors, unsupported};
-use crate::graph::{Axis, Operation, Scalar, Type, Value};
+use crate::graph::{Axis, Operation, Sampled, Scalar, Type, Value};
 use crate::resource::LATER;
 use texgraph_grammar::syntax::Call;
 
@@ -22,11 +22,13 @@ impl<'a> Checker<'a> {
         if let Some((scalar, width)) = types::vector_constructor(name) {
             return Some(self.vector(f, call, scalar, width, given, place));
         }
+        let is_library = f.module < self.library.modules().len();
         match name {
             "given" => Some(self.is_given(f, given, place)),
-            "dx" | "dy" => {
-                Some(self.derivative(f, if name == "dx" { Axis::X } else { Axis::Y }, given, place))
-            }
+            "dx" => Some(self.derivative(f, name, Axis::X, Sampled::Changing, given, place)),
+            "dy" => Some(self.derivative(f, name, Axis::Y, Sampled::Changing, given, place)),
+            "_dx" if is_library => Some(self.derivative(f, name, Axis::X, Sampled::Constant, given, place)),
+            "_dy" if is_library => Some(self.derivative(f, name, Axis::Y, Sampled::Constant, given, place)),
             "mat2" | "mat3" => Some(self.matrix(f, if name == "mat2" { 2 } else { 3 }, given, place)),
             "fold_sprites" => Some(self.not_yet(f, place, name)),
             _ if LATER.contains(&name) => Some(self.not_yet(f, place, name)),
@@ -51,9 +53,16 @@ impl<'a> Checker<'a> {
         }
     }
 
-    fn derivative(&mut self, f: &mut Frame<'a>, axis: Axis, given: &[Given<'a>], place: Place) -> Wire {
+    fn derivative(
+        &mut self,
+        f: &mut Frame<'a>,
+        name: &str,
+        axis: Axis,
+        sampled: Sampled,
+        given: &[Given<'a>],
+        place: Place,
+    ) -> Wire {
         let [one] = given else {
-            let name = if axis == Axis::X { "dx" } else { "dy" };
             let error = match given.get(1) {
                 Some(second) => sentences::too_many_arguments(second.place, name, &["value"]),
                 None => sentences::missing_argument(place, name, "value", "vec<n>"),
@@ -67,7 +76,7 @@ impl<'a> Checker<'a> {
                 .report(f, errors::mismatch(one.place, None, "float", &types::name(f.builder.ty(value))));
         }
         let ty = f.builder.ty(value);
-        Wire::Value(f.builder.push(Operation::Derivative(value, axis), ty))
+        Wire::Value(f.builder.push(Operation::Derivative(value, axis, sampled), ty))
     }
 
     /// `vec3(uv, 0.0)`, `ivec2(-1)`, `int(x)`, `vec<n>(x)`.

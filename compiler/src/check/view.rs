@@ -6,7 +6,7 @@ use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, types as errors};
 use crate::graph;
-use crate::graph::{Axis, Builder, Constant, Level, Operation, Scalar, Type, Value};
+use crate::graph::{Axis, Builder, Constant, Level, Operation, Sampled, Scalar, Type, Value};
 use crate::intrinsic::{DOT, MAXIMUM, MINIMUM, MULTIPLY, RAW_LOG2};
 use crate::resource::KINDS;
 use texgraph_grammar::syntax::Call;
@@ -144,8 +144,8 @@ impl<'a> Checker<'a> {
         let Some((wire, at)) = &slots[3] else { return Some(Level::Auto) };
         let value = self.coordinate(f, wire, Scalar::Float, ty.coordinates(), *at)?;
         let ty = f.builder.ty(value);
-        let x = f.builder.push(Operation::Derivative(value, Axis::X), ty);
-        let y = f.builder.push(Operation::Derivative(value, Axis::Y), ty);
+        let x = f.builder.push(Operation::Derivative(value, Axis::X, Sampled::Constant), ty);
+        let y = f.builder.push(Operation::Derivative(value, Axis::Y, Sampled::Constant), ty);
         Some(Level::Gradient(x, y))
     }
 }
@@ -159,7 +159,7 @@ fn level_of_detail(builder: &mut Builder, view: Value, at: Value) -> Value {
     let (ty, size) = (builder.ty(at), builder.size(view));
     let size = builder.to_float(size);
     let [x, y] = [Axis::X, Axis::Y].map(|axis| {
-        let derivative = builder.push(Operation::Derivative(at, axis), ty);
+        let derivative = builder.push(Operation::Derivative(at, axis, Sampled::Constant), ty);
         let texels = builder.builtin(MULTIPLY, &[derivative, size]);
         builder.builtin(DOT, &[texels, texels])
     });

@@ -122,7 +122,7 @@ impl Counting<'_> {
                 Counts::arithmetic(Arithmetic::intrinsic(*intrinsic, &types))
             }
             Operation::Select(_, yes, _) => Counts::arithmetic(Arithmetic::choice(ty(yes).width())),
-            Operation::Derivative(of, _) => Counts::arithmetic(Arithmetic::derivative(ty(of).width())),
+            Operation::Derivative(of, ..) => Counts::arithmetic(Arithmetic::derivative(ty(of).width())),
             Operation::Lookup(..) => Counts::arithmetic(Arithmetic::lookup()),
             Operation::Constant(_)
             | Operation::Input(_)

@@ -1,6 +1,6 @@
 //! The graph as text, for tests and for looking at it.
 
-use super::{Function, Graph, Level, Operation, Value};
+use super::{Function, Graph, Level, Operation, Sampled, Value};
 use std::fmt::{Display, Formatter, Result};
 
 impl Display for Graph {
@@ -81,7 +81,8 @@ impl Display for Shown<'_> {
                 write!(f, " over ({})", list(&fold.captures))
             }
             Operation::Output(v, i) => write!(f, "output {v}.{i}"),
-            Operation::Derivative(v, axis) => write!(f, "derivative {v} {axis:?}"),
+            Operation::Derivative(v, axis, Sampled::Constant) => write!(f, "derivative {v} {axis:?}"),
+            Operation::Derivative(v, axis, Sampled::Changing) => write!(f, "derivative {v} {axis:?} sampled"),
         }
     }
 }

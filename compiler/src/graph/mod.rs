@@ -148,6 +148,15 @@ pub enum Axis {
     Y,
 }
 
+/// What a screen derivative takes what came out of a sample for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Sampled {
+    /// It is the same in neighbouring pixels.
+    Constant,
+    /// It changes by what two more samples, one pixel apart, differ from it.
+    Changing,
+}
+
 /// An operation over earlier values.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
@@ -199,7 +208,7 @@ pub enum Operation {
     Output(Value, u32),
     /// Screen derivative, one pixel to the right or down. After `pass::differentiate` only of the
     /// entry's inputs.
-    Derivative(Value, Axis),
+    Derivative(Value, Axis, Sampled),
 }
 
 /// A loop: accumulators go through the same function again and again.
@@ -272,7 +281,7 @@ impl Operation {
             | Operation::Size(v)
             | Operation::Lookup(_, v)
             | Operation::Output(v, _)
-            | Operation::Derivative(v, _) => f(*v),
+            | Operation::Derivative(v, ..) => f(*v),
             Operation::Select(a, b, c) => [*a, *b, *c].into_iter().for_each(f),
             Operation::Sample { view, coordinate, layer, level } => {
                 f(*view);
@@ -312,7 +321,7 @@ impl Operation {
             | Operation::Size(v)
             | Operation::Lookup(_, v)
             | Operation::Output(v, _)
-            | Operation::Derivative(v, _) => replace(v),
+            | Operation::Derivative(v, ..) => replace(v),
             Operation::Select(a, b, c) => [a, b, c].into_iter().for_each(replace),
             Operation::Sample { view, coordinate, layer, level } => {
                 replace(view);

@@ -69,7 +69,7 @@ impl Lowering<'_> {
                 Operation::Fold(_) => frame.folds[call][*i as usize],
                 _ => frame.get(*call),
             },
-            Operation::Derivative(v, axis) => {
+            Operation::Derivative(v, axis, _) => {
                 if let Some(given) = body.gradients.get(&(frame.get(*v), *axis)) {
                     return *given;
                 }

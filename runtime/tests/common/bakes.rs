@@ -4,8 +4,8 @@ use super::folds::floats;
 use super::programs::{VEC2, VEC4, intrinsic, output, program, set_resources};
 use super::resource;
 use texgraph_compiler::graph::{
-    Axis, Builder, Constant, Function, Graph, Level, Operation, ParamId, Scalar, Texel, Type, Value, View,
-    ViewDimension, ViewId,
+    Axis, Builder, Constant, Function, Graph, Level, Operation, ParamId, Sampled, Scalar, Texel, Type, Value,
+    View, ViewDimension, ViewId,
 };
 use texgraph_compiler::manifest::{self, Filter, Format, Gradients, Recipe, Resource, Table, Uniform, Wrap};
 use texgraph_compiler::{Pass, Program};
@@ -119,7 +119,8 @@ pub fn pattern(fills: u32) -> Step {
 fn sample(b: &mut Builder, n: u32, uv: Value) -> Value {
     let view = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
     let view = b.push(Operation::View(ViewId(n)), Type::View(view));
-    let [dx, dy] = [Axis::X, Axis::Y].map(|axis| b.push(Operation::Derivative(uv, axis), VEC2));
+    let [dx, dy] =
+        [Axis::X, Axis::Y].map(|axis| b.push(Operation::Derivative(uv, axis, Sampled::Constant), VEC2));
     b.sample(view, uv, None, Level::Gradient(dx, dy))
 }
 

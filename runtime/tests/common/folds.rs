@@ -5,8 +5,8 @@ use super::{project, resource};
 use std::path::Path;
 use texgraph_compiler::Program;
 use texgraph_compiler::graph::{
-    Axis, Builder, Constant, Fold, Function, FunctionId, Graph, Level, Operation, ParamId, Texel, Type,
-    Value, View, ViewDimension, ViewId,
+    Axis, Builder, Constant, Fold, Function, FunctionId, Graph, Level, Operation, ParamId, Sampled, Texel,
+    Type, Value, View, ViewDimension, ViewId,
 };
 use texgraph_compiler::manifest::{Filter, IndicesSource, Recipe, Wrap};
 use texgraph_runtime::resource::{Tables, load};
@@ -275,7 +275,8 @@ pub fn gathered(folder: &Path, picture: &str) -> (Program, Tables) {
     let mut b = Builder::new("test");
     let (uv, [x, _]) = place(&mut b);
     let view = b.push(Operation::View(ViewId(0)), sampled);
-    let [dx, dy] = [Axis::X, Axis::Y].map(|axis| b.push(Operation::Derivative(uv, axis), VEC2));
+    let [dx, dy] =
+        [Axis::X, Axis::Y].map(|axis| b.push(Operation::Derivative(uv, axis, Sampled::Constant), VEC2));
     let (start, zero, nine) = (b.constant(Constant::floats(&[0.0; 4])), int(&mut b, 0), int(&mut b, 9));
     let fold = Fold {
         body: FunctionId(0),

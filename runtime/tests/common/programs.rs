@@ -3,8 +3,8 @@
 use super::{graph_of, manifest, project, resource};
 use std::path::Path;
 use texgraph_compiler::graph::{
-    Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, ParamId, ResourceView, Scalar,
-    Texel, Type, Value, View, ViewDimension, ViewId,
+    Axis, Builder, Constant, Function, FunctionId, Graph, Level, Operation, ParamId, ResourceView, Sampled,
+    Scalar, Texel, Type, Value, View, ViewDimension, ViewId,
 };
 use texgraph_compiler::intrinsic::Intrinsic;
 use texgraph_compiler::manifest::{self, Filter, Input, Output, Param, Recipe, Source, Uniform, Wrap};
@@ -114,7 +114,7 @@ pub fn sampled(folder: &Path, recipe: Recipe, wrap: Wrap, filter: Filter) -> (Pr
     let mul = intrinsic("*", ": vec<");
     let at = b.builtin(mul, &[uv, scale]);
     let [dx, dy] = [Axis::X, Axis::Y].map(|axis| {
-        let d = b.push(Operation::Derivative(uv, axis), VEC2);
+        let d = b.push(Operation::Derivative(uv, axis, Sampled::Constant), VEC2);
         b.builtin(mul, &[d, scale])
     });
     let color = b.sample(view, at, None, Level::Gradient(dx, dy));
@@ -150,7 +150,7 @@ pub fn tiled(folder: &Path, recipe: Recipe, wrap: Wrap, filter: Filter) -> (Prog
     let row = b.builtin(intrinsic("*", ": ivec<"), &[y, int_four]);
     let layer = b.builtin(intrinsic("+", ": ivec<"), &[row, x]);
     let [dx, dy] = [Axis::X, Axis::Y].map(|axis| {
-        let d = b.push(Operation::Derivative(uv, axis), VEC2);
+        let d = b.push(Operation::Derivative(uv, axis, Sampled::Constant), VEC2);
         let d = b.builtin(mul, &[d, four]);
         b.builtin(mul, &[d, scale])
     });

@@ -132,12 +132,12 @@ fn of_entry(entry: &Function, changes: bool) -> Variant {
     let is_changing = |slot: &Slot| changes && slot.ty.is_float() && !is_per_draw(&slot.name);
     let changing = entry.inputs.iter().enumerate().filter(|(_, slot)| is_changing(slot));
     let changing = changing.fold(0, |all, (i, _)| all | Layout::CALLED.bit(i));
-    Variant { changing, wanted: smallvec![false; entry.outputs.len()] }
+    Variant { changing, wanted: smallvec![false; entry.outputs.len()], is_sampled: false }
 }
 
 /// The variant of a condition that goes with one of its fold's body.
 pub fn of_condition(body: &Variant) -> Variant {
-    Variant { changing: body.changing, wanted: smallvec![false] }
+    Variant { changing: body.changing, wanted: smallvec![false], is_sampled: body.is_sampled }
 }
 
 /// One variant being looked at.
@@ -167,8 +167,12 @@ impl<'a> Demanding<'a> {
         let mut inner = FxHashMap::default();
         for (value, operation) in self.function.iter().rev() {
             match operation {
-                Operation::Sample { coordinate, level: Level::Auto, .. } => self.need(*coordinate),
-                Operation::Derivative(v, _) => self.need(*v),
+                Operation::Sample { coordinate, level, .. }
+                    if *level == Level::Auto || marked(&self.values, value) =>
+                {
+                    self.need(*coordinate);
+                }
+                Operation::Derivative(v, ..) => self.need(*v),
                 Operation::Call(callee, arguments) => {
                     inner.insert(value, self.call(value, *callee, arguments));
                 }
@@ -189,7 +193,17 @@ impl<'a> Demanding<'a> {
 
     /// Whether a value changes.
     fn is_active(&self, value: Value) -> bool {
-        self.changes(self.analysis.known[self.place].depends[value.0 as usize])
+        self.changes(self.known().depends[value.0 as usize])
+    }
+
+    fn known(&self) -> &'a depend::Known {
+        self.analysis.known[self.place].get(self.variant.is_sampled)
+    }
+
+    /// A function that a value comes from, and whether its outputs change with what it samples.
+    fn used(&self, id: FunctionId, by: Value) -> (&'a depend::Known, bool) {
+        let is_sampled = self.analysis.is_sampled(id, self.place, self.variant, by);
+        (self.analysis.known[id.0 as usize].get(is_sampled), is_sampled)
     }
 
     fn need(&mut self, value: Value) {
@@ -209,7 +223,7 @@ impl<'a> Demanding<'a> {
     }
 
     fn call(&mut self, call: Value, callee: FunctionId, arguments: &[Value]) -> Variant {
-        let callee = self.analysis.known(callee);
+        let (callee, is_sampled) = self.used(callee, call);
         let mut wanted = smallvec![false; callee.outputs.len()];
         let mut useful = callee.needed;
         for output in self.outputs.remove(&call).unwrap_or_default() {
@@ -220,7 +234,7 @@ impl<'a> Demanding<'a> {
         let useful =
             arguments.iter().enumerate().filter(|(i, v)| useful & bit(*i) != 0 && self.is_active(**v));
         let changing = useful.fold(0, |all, (i, _)| all | bit(i));
-        let variant = Variant { changing, wanted };
+        let variant = Variant { changing, wanted, is_sampled };
         for (i, argument) in arguments.iter().enumerate() {
             if variant.takes(Layout::CALLED, i, self.function.ty(*argument)) {
                 self.need(*argument);
@@ -230,20 +244,21 @@ impl<'a> Demanding<'a> {
     }
 
     fn fold(&mut self, value: Value, fold: &Fold) -> Variant {
-        let (body, layout) = (self.analysis.known(fold.body), self.analysis.layout(fold.body));
+        let (body, is_sampled) = self.used(fold.body, value);
+        let layout = self.analysis.layout(fold.body);
         let first = fold.starts.len() + 1;
-        let condition = fold.condition.map_or(0, |condition| self.analysis.known(condition).needed);
+        let condition = fold.condition.map_or(0, |condition| self.used(condition, value).0.needed);
         let outputs = self.outputs.remove(&value).unwrap_or_default();
         let wanted = outputs.iter().fold(0, |all, output| all | layout.bit(*output as usize));
         let useful = depend::through_steps(layout, &body.outputs, wanted | body.needed | condition);
         // An accumulator may change with more than its start does.
-        let own = &self.analysis.known[self.place];
+        let own = self.known();
         let carried = own.results.get(&value).into_iter().flatten().copied().enumerate();
         let captured = fold.captures.iter().map(|v| own.depends[v.0 as usize]);
         let captured = captured.enumerate().map(|(i, depends)| (first + i, depends));
         let changing = carried.chain(captured).filter(|(_, depends)| self.changes(*depends));
         let changing = changing.fold(0, |all, (i, _)| all | layout.bit(i)) & useful;
-        let mut variant = Variant { changing, wanted: SmallVec::new() };
+        let mut variant = Variant { changing, wanted: SmallVec::new(), is_sampled };
         let operands = fold.starts.iter().enumerate();
         let operands = operands.chain(fold.captures.iter().enumerate().map(|(i, v)| (first + i, v)));
         for (i, operand) in operands {

@@ -1,7 +1,8 @@
 //! Forward, callees first: what every value changes with.
 
+use super::sampled::Marks;
 use super::{BITS, Inputs, Layout};
-use crate::graph::{Fold, Function, Graph, Level, Operation, Value};
+use crate::graph::{Fold, Function, FunctionId, Graph, Level, Operation, Value};
 use crate::intrinsic::Derivative;
 use rustc_hash::FxHashMap;
 
@@ -42,26 +43,28 @@ impl Sources {
     }
 }
 
-/// Looks at every function once.
-pub fn analyse(graph: &Graph, layouts: &[Layout]) -> Vec<Known> {
-    let mut known: Vec<Known> = Vec::with_capacity(graph.functions.len());
-    for (function, layout) in graph.functions.iter().zip(layouts) {
-        let mut analysis = Depending {
-            function,
-            layout: *layout,
-            layouts,
-            known: &known,
-            depends: Vec::with_capacity(function.values.len()),
-            results: FxHashMap::default(),
-            needed: 0,
-        };
-        for (value, operation) in function.iter() {
-            let depends = analysis.value(value, operation);
-            analysis.depends.push(if function.ty(value).is_float() { depends } else { 0 });
-        }
-        let Depending { depends, results, needed, .. } = analysis;
-        let outputs = function.outputs.iter().map(|(_, value)| depends[value.0 as usize]).collect();
-        known.push(Known { depends, results, outputs, needed });
+/// What is known of each function: where no more of it is asked than what its own derivatives are
+/// taken of, and where the change of its outputs by what it samples is asked for too.
+pub struct KnownOf {
+    own: Known,
+    /// None where it is as `own`: nothing counts as changed by samples.
+    whole: Option<Known>,
+}
+
+impl KnownOf {
+    pub fn get(&self, is_whole: bool) -> &Known {
+        self.whole.as_ref().filter(|_| is_whole).unwrap_or(&self.own)
+    }
+}
+
+/// Looks at every function once, or twice where samples count as changing.
+pub fn analyse(graph: &Graph, layouts: &[Layout], marks: Option<&[Marks]>) -> Vec<KnownOf> {
+    let mut known: Vec<KnownOf> = Vec::with_capacity(graph.functions.len());
+    for (i, function) in graph.functions.iter().enumerate() {
+        let marks = marks.and_then(|marks| marks.get(i));
+        let of = |is_whole| Depending::new(function, layouts[i], layouts, &known, marks, is_whole).run();
+        let of = KnownOf { own: of(false), whole: marks.filter(|marks| marks.samples()).map(|_| of(true)) };
+        known.push(of);
     }
     known
 }
@@ -71,13 +74,57 @@ struct Depending<'a> {
     function: &'a Function,
     layout: Layout,
     layouts: &'a [Layout],
-    known: &'a [Known],
+    known: &'a [KnownOf],
+    marks: Option<&'a Marks>,
+    is_whole: bool,
     depends: Vec<Inputs>,
     results: FxHashMap<Value, Vec<Inputs>>,
     needed: Inputs,
 }
 
-impl Depending<'_> {
+impl<'a> Depending<'a> {
+    fn new(
+        function: &'a Function,
+        layout: Layout,
+        layouts: &'a [Layout],
+        known: &'a [KnownOf],
+        marks: Option<&'a Marks>,
+        is_whole: bool,
+    ) -> Depending<'a> {
+        Depending {
+            function,
+            layout,
+            layouts,
+            known,
+            marks,
+            is_whole,
+            depends: Vec::with_capacity(function.values.len()),
+            results: FxHashMap::default(),
+            needed: 0,
+        }
+    }
+
+    fn run(mut self) -> Known {
+        let function = self.function;
+        for (value, operation) in function.iter() {
+            let depends = self.value(value, operation);
+            self.depends.push(if function.ty(value).is_float() { depends } else { 0 });
+        }
+        let Depending { depends, results, needed, .. } = self;
+        let outputs = function.outputs.iter().map(|(_, value)| depends[value.0 as usize]).collect();
+        Known { depends, results, outputs, needed }
+    }
+
+    /// Whether samples count as changing in a value.
+    fn is_marked(&self, value: Value) -> bool {
+        self.marks.is_some_and(|marks| marks.has(self.is_whole, value))
+    }
+
+    /// A function that a value comes from.
+    fn used(&self, id: FunctionId, by: Value) -> &'a Known {
+        self.known[id.0 as usize].get(self.is_marked(by))
+    }
+
     fn of(&self, value: Value) -> Inputs {
         self.depends[value.0 as usize]
     }
@@ -97,20 +144,22 @@ impl Depending<'_> {
             Operation::Extract(v, _) => self.of(*v),
             Operation::Select(_, yes, no) => self.of(*yes) | self.of(*no),
             Operation::Output(of, i) => self.output(*of, *i as usize),
-            Operation::Sample { coordinate, level: Level::Auto, .. } => {
-                self.needed |= self.of(*coordinate);
-                0
+            Operation::Sample { coordinate, level, .. } => {
+                if *level == Level::Auto {
+                    self.needed |= self.of(*coordinate);
+                }
+                if self.is_marked(value) { self.of(*coordinate) } else { 0 }
             }
-            Operation::Derivative(v, _) => {
+            Operation::Derivative(v, ..) => {
                 self.needed |= self.of(*v);
                 0
             }
             Operation::Call(callee, arguments) => {
-                self.needed |= self.through(arguments, self.known[callee.0 as usize].needed);
+                self.needed |= self.through(arguments, self.used(*callee, value).needed);
                 0
             }
             Operation::Fold(fold) => {
-                let results = self.fold(fold);
+                let results = self.fold(value, fold);
                 self.results.insert(value, results);
                 0
             }
@@ -122,7 +171,7 @@ impl Depending<'_> {
     fn output(&self, of: Value, i: usize) -> Inputs {
         let output = match self.function.operation(of) {
             Operation::Call(callee, arguments) => {
-                let output = self.known[callee.0 as usize].outputs.get(i);
+                let output = self.used(*callee, of).outputs.get(i);
                 output.map(|output| self.through(arguments, *output))
             }
             _ => self.results.get(&of).and_then(|results| results.get(i)).copied(),
@@ -137,8 +186,8 @@ impl Depending<'_> {
     }
 
     /// What the accumulators of a fold change with, after any number of steps.
-    fn fold(&mut self, fold: &Fold) -> Vec<Inputs> {
-        let (body, layout) = (&self.known[fold.body.0 as usize], self.layouts[fold.body.0 as usize]);
+    fn fold(&mut self, value: Value, fold: &Fold) -> Vec<Inputs> {
+        let (body, layout) = (self.used(fold.body, value), self.layouts[fold.body.0 as usize]);
         let captures = fold.captures.iter().map(|v| self.of(*v)).enumerate();
         let first = fold.starts.len() + 1;
         let mut sources = Sources::of(layout, captures.map(|(i, depends)| (first + i, depends)));
@@ -156,7 +205,7 @@ impl Depending<'_> {
                 break;
             }
         }
-        let condition = fold.condition.map_or(0, |condition| self.known[condition.0 as usize].needed);
+        let condition = fold.condition.map_or(0, |condition| self.used(condition, value).needed);
         let needed = through_steps(layout, &body.outputs, body.needed | condition);
         self.needed |= sources.through(needed);
         accumulators

@@ -2,8 +2,10 @@
 
 use super::demand::{Demand, Requests, of_condition};
 use super::{Analysis, Layout, Variant, marked};
-use crate::graph::{Axis, Builder, Constant, Fold, Function, FunctionId, Level, Operation, Slot, Value};
-use crate::intrinsic::{self, Derivative, Tangents};
+use crate::graph::{
+    Axis, Builder, Constant, Fold, Function, FunctionId, Level, Operation, Sampled, Slot, Value,
+};
+use crate::intrinsic::{self, ADD, Derivative, SUBTRACT, Tangents};
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -127,7 +129,7 @@ impl<'a> Making<'a> {
             if !entry {
                 return self.builder.input(name, slot.ty);
             }
-            let value = self.builder.push(Operation::Derivative(input, axis), slot.ty);
+            let value = self.builder.push(Operation::Derivative(input, axis, Sampled::Constant), slot.ty);
             self.builder.name(value, name);
             value
         })
@@ -137,7 +139,7 @@ impl<'a> Making<'a> {
     fn copy(&mut self, old: Value, operation: &Operation) -> Value {
         let copy = match operation {
             Operation::Input(i) => return self.inputs.get(*i as usize).copied().unwrap_or(Value(0)),
-            Operation::Derivative(v, axis) => return self.tangent(*v)[usize::from(*axis == Axis::Y)],
+            Operation::Derivative(v, axis, _) => return self.tangent(*v)[usize::from(*axis == Axis::Y)],
             Operation::Sample { view, coordinate, layer, level: Level::Auto } => Operation::Sample {
                 view: self.value(*view),
                 coordinate: self.value(*coordinate),
@@ -224,6 +226,9 @@ impl<'a> Making<'a> {
                 let (condition, yes, no) = (self.value(*condition), self.tangent(*yes), self.tangent(*no));
                 [0, 1].map(|axis| self.builder.select(condition, yes[axis], no[axis]))
             }
+            Operation::Sample { view, coordinate, layer, level } => {
+                self.difference(old, *view, *coordinate, *layer, *level)?
+            }
             Operation::Output(of, i) => {
                 let places = self.places(*of, *i as usize)?;
                 let of = self.value(*of);
@@ -232,6 +237,30 @@ impl<'a> Making<'a> {
             _ => return None,
         };
         Some(pair)
+    }
+
+    /// How much two samples one pixel apart, of the same level, differ from this one.
+    fn difference(
+        &mut self,
+        old: Value,
+        view: Value,
+        coordinate: Value,
+        layer: Option<Value>,
+        level: Level,
+    ) -> Option<Pair> {
+        let steps = self.tangents[coordinate.0 as usize]?;
+        let level = match level {
+            Level::Auto => self.level(coordinate),
+            Level::Level(level) => Level::Level(self.value(level)),
+            Level::Gradient(x, y) => Level::Gradient(self.value(x), self.value(y)),
+        };
+        let (view, at, layer) = (self.value(view), self.value(coordinate), layer.map(|v| self.value(v)));
+        let sample = self.value(old);
+        Some(steps.map(|step| {
+            let there = self.builder.builtin(ADD, &[at, step]);
+            let there = self.builder.sample(view, there, layer, level);
+            self.builder.builtin(SUBTRACT, &[there, sample])
+        }))
     }
 
     fn apply(&mut self, rule: fn(&mut Tangents) -> Value, old: Value, arguments: &[Value]) -> Pair {

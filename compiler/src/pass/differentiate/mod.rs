@@ -3,7 +3,9 @@
 //! A sample needs the gradient of its coordinate; a function is made anew for every combination of
 //! inputs that change across the screen and outputs whose change is wanted (a `Variant`). Only
 //! values that reach a sample or a `dx`/`dy` get a tangent. The rules are in the intrinsic table;
-//! what comes out of a sample or a fetch, and every integer, counts as constant.
+//! what comes out of a fetch, and every integer, counts as constant. So does what comes out of a
+//! sample, but in what a `dx` or `dy` is taken of (see `sampled`): there it changes by what two more
+//! samples, one pixel apart, differ from it.
 //!
 //! A fold carries the tangents of the accumulators that need one as further accumulators, and takes
 //! those of its captures as further captures. Which accumulators need one may depend on how many
@@ -20,14 +22,16 @@
 mod demand;
 mod depend;
 mod make;
+mod sampled;
 
 use super::finished::{Done, Finished};
 use crate::graph::{Function, FunctionId, Graph, Operation, Type, Value};
 use demand::{Requests, Work};
-use depend::Known;
+use depend::KnownOf;
 pub use make::Made;
 use make::Making;
 use rustc_hash::FxHashMap;
+use sampled::Marks;
 use smallvec::SmallVec;
 
 /// A set of inputs of a function. Those from bit 127 on share it: they may count as dependent when
@@ -86,6 +90,8 @@ impl Layout {
 pub struct Variant {
     changing: Inputs,
     wanted: SmallVec<[bool; 16]>,
+    /// Its outputs change with what it samples.
+    is_sampled: bool,
 }
 
 impl Variant {
@@ -97,6 +103,7 @@ impl Variant {
     /// Does all that the other does, too.
     fn join(&mut self, other: &Variant) {
         self.changing |= other.changing;
+        self.is_sampled |= other.is_sampled;
         self.wanted.iter_mut().zip(&other.wanted).for_each(|(wanted, other)| *wanted |= other);
     }
 }
@@ -105,7 +112,9 @@ impl Variant {
 struct Analysis<'a> {
     graph: &'a Graph,
     layouts: Vec<Layout>,
-    known: Vec<Known>,
+    known: Vec<KnownOf>,
+    /// Of each function the values that are changed by what is sampled, if any are.
+    marks: Option<Vec<Marks>>,
     finished: &'a Finished,
     /// The inputs of the entry change across the screen.
     changes: bool,
@@ -114,8 +123,9 @@ struct Analysis<'a> {
 impl<'a> Analysis<'a> {
     fn of(graph: &'a Graph, finished: &'a Finished) -> Analysis<'a> {
         let layouts = Layout::all(graph);
-        let known = depend::analyse(graph, &layouts);
-        Analysis { graph, layouts, known, finished, changes: true }
+        let marks = sampled::marks(graph);
+        let known = depend::analyse(graph, &layouts, marks.as_deref());
+        Analysis { graph, layouts, known, marks, finished, changes: true }
     }
 
     /// A variant of a function that has been through all passes already.
@@ -124,8 +134,11 @@ impl<'a> Analysis<'a> {
         self.finished.find(&self.graph.functions[place], variant).filter(|_| is_called)
     }
 
-    fn known(&self, id: FunctionId) -> &Known {
-        &self.known[id.0 as usize]
+    /// Whether a function's outputs change with what it samples where a value of another function,
+    /// in one of that one's variants, comes from it.
+    fn is_sampled(&self, id: FunctionId, place: usize, variant: &Variant, by: Value) -> bool {
+        let marks = self.marks.as_ref();
+        marks.is_some_and(|marks| marks[id.0 as usize].samples() && marks[place].has(variant.is_sampled, by))
     }
 
     fn layout(&self, id: FunctionId) -> Layout {

@@ -30,7 +30,7 @@ impl Planner<'_> {
         for (value, operation) in function.iter() {
             let components = match operation {
                 Operation::Input(n) => self.entry_input(*n, function.ty(value)),
-                Operation::Derivative(of, axis) => match function.operation(*of) {
+                Operation::Derivative(of, axis, _) => match function.operation(*of) {
                     Operation::Input(n) => self.entry_derivative(*n, *axis),
                     _ => continue,
                 },
