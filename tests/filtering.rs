@@ -34,13 +34,14 @@ fn main() {
     let arguments = Arguments::from_args();
     let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
     let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
-    let tests: [(&str, Test); 10] = [
+    let tests: [(&str, Test); 11] = [
         ("copies_of_one_pattern_are_the_repeated_image", copies_are_the_repeated_image),
         ("a_wrapped_pattern_is_the_repeated_image", wrapped_is_the_repeated_image),
         ("the_level_has_no_seam", the_level_has_no_seam),
         ("different_patterns_are_one_picture", different_patterns_are_one_picture),
         ("a_pattern_alone_lies_on_nothing", alone_lies_on_nothing),
         ("far_tiles_become_the_mean", far_tiles_become_the_mean),
+        ("weighted_means_are_sums_of_means", weighted_means_are_sums),
         ("levels_are_those_of_the_filter", levels_are_those_of_the_filter),
         ("levels_count_on_anisotropy", levels_count_on_anisotropy),
         ("a_sampled_value_changes_as_it_is_drawn", sampled_values_change_as_drawn),
@@ -297,6 +298,37 @@ fn far_tiles_become_the_mean(renderer: &Renderer) -> Result<(), Failed> {
             if drift.abs() > TOLERANCE || (pixels <= 0.5 && spread > TOLERANCE) {
                 return Err(format!("{pixels} pixels a tile: drift {drift}, spread {spread}").into());
             }
+        }
+    }
+    Ok(())
+}
+
+/// Weights count by their share; without any, all patterns count the same; and tiles that are drawn
+/// with them tend to that colour.
+fn weighted_means_are_sums(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder()?;
+    let head = "let tiles = patterns(\"tiles.png\", grid: ivec2(2))
+node weight(pick: int) -> (w: float) { w = if pick == 0 { 3.0 } else if pick == 2 { 1.0 } else { -5.0 } }
+node drawn(cell: ivec2) -> (pick: int) { pick = if hash(cell).x < 0.75 { 0 } else { 2 } }";
+    let pairs = [
+        ("tiles.weighted_average(weight)", "0.75 * tiles.average(0) + 0.25 * tiles.average(2)"),
+        ("tiles.weighted_average(|pick| 0.25)", "tiles.average"),
+        ("tiles.weighted_average(|pick| 0.0)", "tiles.average"),
+    ];
+    let source = |value| format!("{head}\ntexture t(uv: vec2) -> (color: color) {{ color = {value} }}");
+    for (found, expected) in pairs {
+        same(renderer, folder.path(), [&source(found), &source(expected)], 100.0)?;
+    }
+    let tiled = source("tiles.tiled(ifloor(uv), fract(uv), drawn, far: weighted_average(tiles, weight))");
+    let pictures = draw(renderer, &loaded(folder.path(), &tiled)?, &[view(1.0), view(0.5)])?;
+    for channel in 0..4 {
+        let mean = |picture: &Picture| {
+            let sum: f32 = picture.pixels.iter().map(|pixel| pixel[channel]).sum();
+            sum / picture.pixels.len() as f32
+        };
+        let [near, far] = [&pictures[0], &pictures[1]].map(mean);
+        if (near - far).abs() > TOLERANCE {
+            return Err(format!("tiles of mean {near} become {far}").into());
         }
     }
     Ok(())
