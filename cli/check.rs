@@ -1,4 +1,4 @@
-//! `texgraph check`: all errors of all files.
+//! `texgraph check`: all errors and warnings of all files.
 
 use crate::args::Check;
 use crate::problem::{Problem, Report};
@@ -12,7 +12,7 @@ pub fn run(args: &Check, report: &mut Report) -> Result<(), Problem> {
     let library = program::library()?;
     for file in &args.files {
         let checked = Program::open(&library, file, args.common.allow_outside).and_then(|program| {
-            program.check()?;
+            report.warn(&program.check()?);
             program.check_profile(args.host.profile.into())
         });
         if let Err(problem) = checked {

@@ -6,6 +6,7 @@
 
 use crate::args::MessageFormat;
 use std::io::{IsTerminal, Write};
+use texgraph_compiler::Checked;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, render};
 use texgraph_compiler::module::{Source, Sources};
 use texgraph_runtime::picture::PictureError;
@@ -115,6 +116,12 @@ impl Report {
         // When even standard error is closed, the exit code is all that can be said.
         let _ = std::io::stderr().lock().write_all(text.as_bytes());
         self.exit_code = self.exit_code.max(problem.exit_code());
+    }
+
+    /// Shows warnings, which leave the exit code as it is.
+    pub fn warn(&self, checked: &Checked) {
+        let text = self.pages(&checked.sources, &checked.warnings);
+        let _ = std::io::stderr().lock().write_all(text.as_bytes());
     }
 
     /// Counts as wrong input what was shown in another way.

@@ -7,7 +7,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use texgraph_compiler::diagram::Diagram;
 use texgraph_compiler::module::{Loader, Source, Sources};
-use texgraph_compiler::{Compiled, Failure, Library, Options, Profile, profile};
+use texgraph_compiler::{Checked, Compiled, Failure, Library, Options, Profile, profile};
 use texgraph_runtime::project::Project;
 use texgraph_runtime::resource::{self, Tables};
 
@@ -42,9 +42,8 @@ impl<'a> Program<'a> {
     ///
     /// # Errors
     /// All errors of the file and what it imports.
-    pub fn check(&self) -> Result<(), Problem> {
-        texgraph_compiler::check(self.library, &self.path, &self.project)?;
-        Ok(())
+    pub fn check(&self) -> Result<Checked, Problem> {
+        Ok(texgraph_compiler::check(self.library, &self.path, &self.project)?)
     }
 
     /// Holds the file's textures against the limits of a host.

@@ -21,8 +21,8 @@ use texgraph_compiler::diagnostic::{codes, render};
 const BUGS: [&str; 2] = ["E0049", "E0999"];
 
 /// What every step of a text's way to pixels finds.
-const STAGES: [&str; 8] =
-    ["syntax", "names", "types", "dimensions", "rates", "resources", "limits", "imports"];
+const STAGES: [&str; 9] =
+    ["syntax", "names", "types", "dimensions", "rates", "resources", "limits", "imports", "filtering"];
 
 #[test]
 fn every_file_has_its_page() {

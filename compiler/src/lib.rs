@@ -117,6 +117,15 @@ pub struct Failure {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+/// What a file that is right makes one think of.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// All texts that places point into.
+    pub sources: Sources,
+    /// What is likely not meant so, in source order.
+    pub warnings: Vec<Diagnostic>,
+}
+
 /// A program with the texts its places point into.
 #[derive(Clone, Debug)]
 pub struct Compiled {
@@ -148,19 +157,19 @@ pub fn compile(
     Ok(Compiled { program: Program { passes, manifest }, sources: modules.sources })
 }
 
-/// Checks a whole file: every texture, every node, and what it imports. The texts are returned in
-/// either case.
+/// Checks a whole file: every texture, every node, and what it imports.
 ///
 /// # Errors
 /// Every error, in source order.
-pub fn check(library: &Library, main: &str, loader: &dyn Loader) -> Result<Sources, Failure> {
+pub fn check(library: &Library, main: &str, loader: &dyn Loader) -> Result<Checked, Failure> {
     let modules = load(library, main, loader)?;
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     checker.everything();
+    let warnings = checker.take_warnings();
     let diagnostics = advice::advise(&modules, checker.into_diagnostics());
     if diagnostics.is_empty() {
-        Ok(modules.sources)
+        Ok(Checked { sources: modules.sources, warnings })
     } else {
         Err(Failure { sources: modules.sources, diagnostics })
     }
@@ -220,7 +229,7 @@ struct Planned {
 /// All of compiling but the shaders.
 fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Planned, Vec<Diagnostic>> {
     let checked = checked(library, modules, options);
-    let Checked { graphs, label, head } = checked.map_err(|found| advice::advise(modules, found))?;
+    let Graphs { graphs, label, head } = checked.map_err(|found| advice::advise(modules, found))?;
     let finished = &library.ahead().finished;
     let optimised = graphs.into_iter().map(|PassGraph { graph, bake }| {
         let gradients = if bake.is_some() { Gradients::Derive } else { options.gradients };
@@ -236,7 +245,7 @@ fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Pl
 }
 
 /// A texture that is right.
-struct Checked {
+struct Graphs {
     /// Bakes, then the texture.
     graphs: Vec<PassGraph>,
     /// Its documentation.
@@ -246,7 +255,7 @@ struct Checked {
 }
 
 /// The graphs of the chosen texture and the bakes before it.
-fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Checked, Vec<Diagnostic>> {
+fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Graphs, Vec<Diagnostic>> {
     let mut checker = Checker::new(library, &modules.modules);
     checker.declare();
     let key = checker.texture(options.texture.as_deref());
@@ -265,7 +274,7 @@ fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Ch
         choose_outputs(&mut last.graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
         options.plane.iter().for_each(|plane| plane::seen(&mut last.graph, *plane));
     }
-    Ok(Checked { graphs, label, head })
+    Ok(Graphs { graphs, label, head })
 }
 
 /// Leaves only the outputs that are wanted.

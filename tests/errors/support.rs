@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use texgraph_compiler::Diagnostic;
 use texgraph_compiler::module::Loader;
-use texgraph_compiler::{Compiled, Failure, Library, Options, Profile, check, compile};
+use texgraph_compiler::{Checked, Compiled, Failure, Library, Options, Profile, check, compile};
 use texgraph_runtime::{project::Project, resource};
 
 static LIBRARY: LazyLock<Library> = LazyLock::new(|| Library::standard().expect("the library is right"));
@@ -125,7 +125,8 @@ impl Case {
     pub fn errors_of_text(&self, text: &str) -> Vec<Diagnostic> {
         let loader =
             Folder { path: self.folder(), main: Some((format!("{}.tex", self.name), text.to_owned())) };
-        check(&LIBRARY, &format!("{}.tex", self.path()), &loader).err().map_or(Vec::new(), |e| e.diagnostics)
+        let checked = said(check(&LIBRARY, &format!("{}.tex", self.path()), &loader));
+        checked.err().map_or(Vec::new(), |said| said.diagnostics)
     }
 
     /// What is said about the file.
@@ -136,7 +137,7 @@ impl Case {
             Some("load") => load(&main, &loader, &root().join(&main)),
             Some(wish) if wish.starts_with("large file ") => load_large(&main, &loader, &wish[11..]),
             Some(wish) => compile(&LIBRARY, &main, &loader, &asked(wish)).err(),
-            None => check(&LIBRARY, &main, &loader).err(),
+            None => said(check(&LIBRARY, &main, &loader)).err(),
         };
         failure.unwrap_or_else(|| panic!("{}: nothing is wrong", self.path()))
     }
@@ -184,7 +185,13 @@ fn profile(name: &str) -> Profile {
 pub fn errors_of(text: &str) -> Result<(), Failure> {
     let loader =
         Folder { path: root().join("imports"), main: Some(("main.tex".to_owned(), text.to_owned())) };
-    check(&LIBRARY, "main.tex", &loader).map(drop)
+    said(check(&LIBRARY, "main.tex", &loader))
+}
+
+/// Errors, or else warnings.
+fn said(checked: Result<Checked, Failure>) -> Result<(), Failure> {
+    let Checked { sources, warnings } = checked?;
+    if warnings.is_empty() { Ok(()) } else { Err(Failure { sources, diagnostics: warnings }) }
 }
 
 /// Compiles a text for a host.
@@ -220,7 +227,7 @@ pub fn codes_in_use() -> BTreeSet<String> {
 }
 
 fn is_code(word: &str) -> bool {
-    word.len() == 5 && word.starts_with('E') && word[1..].bytes().all(|byte| byte.is_ascii_digit())
+    word.len() == 5 && word.starts_with(['E', 'W']) && word[1..].bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// Texts to break: the examples and every error file.

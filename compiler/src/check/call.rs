@@ -321,6 +321,7 @@ impl<'a> Checker<'a> {
             return Wire::Unknown;
         };
         f.builder.set_place(place);
+        self.warn_of_call(f, callable, &head, given);
         match callable {
             Callable::Node(module, item) => self.call_node(f, (module, item, None), bound, place),
             Callable::Intrinsic(intrinsic) => {

@@ -29,6 +29,7 @@ mod range;
 mod render;
 mod special;
 mod step;
+mod still;
 mod texture;
 mod types;
 mod view;
@@ -86,6 +87,7 @@ pub struct Checker<'a> {
     /// The resources that are rows of the shared table.
     rows: Vec<u32>,
     diagnostics: Vec<Diagnostic>,
+    warnings: Vec<Diagnostic>,
     /// Where functions that were made ahead stand, by their place in the library's list.
     taken: FxHashMap<FunctionId, FunctionId>,
     /// Nodes made or being made.
@@ -129,6 +131,7 @@ impl<'a> Checker<'a> {
             views: Vec::new(),
             rows: Vec::new(),
             diagnostics: Vec::new(),
+            warnings: Vec::new(),
             taken: FxHashMap::default(),
             started: 0,
             values: 0,
@@ -136,6 +139,14 @@ impl<'a> Checker<'a> {
             overfull: false,
             full: false,
         }
+    }
+
+    /// All warnings so far, in source order, each once.
+    pub fn take_warnings(&mut self) -> Vec<Diagnostic> {
+        let mut warnings = std::mem::take(&mut self.warnings);
+        warnings.sort_by_key(|d| (d.place, d.code));
+        warnings.dedup_by_key(|d| (d.place, d.code));
+        warnings
     }
 
     /// All errors so far, in source order, each once.

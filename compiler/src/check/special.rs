@@ -70,6 +70,7 @@ impl<'a> Checker<'a> {
             return self.report(f, error);
         };
         let Some(value) = self.value(f, &one.wire, one.place) else { return Wire::Unknown };
+        self.warn_if_still(f, name, one);
         let value = f.builder.to_float(value);
         if !f.builder.ty(value).is_float() {
             return self

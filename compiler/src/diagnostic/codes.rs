@@ -113,6 +113,7 @@ pub const PAGES: &[(&str, &str)] = &[
     ("E0805", include_str!("pages/E0805.md")),
     ("E0901", include_str!("pages/E0901.md")),
     ("E0999", include_str!("pages/E0999.md")),
+    ("W0801", include_str!("pages/W0801.md")),
 ];
 
 /// The long explanation of a code, in Markdown; none for an unknown one.

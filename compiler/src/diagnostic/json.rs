@@ -75,7 +75,7 @@ impl<'a> Message<'a> {
         let help = diagnostic.help.as_ref();
         Message {
             code: Some(code).filter(|code| !code.code.is_empty()),
-            level: "error",
+            level: diagnostic.level(),
             spans: primary.into_iter().chain(related).collect(),
             children: help
                 .map(|help| Message::help(files, help, diagnostic.suggestion.as_ref()))

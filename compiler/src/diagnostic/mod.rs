@@ -10,6 +10,7 @@ mod clip;
 pub mod codes;
 pub mod constructors;
 mod excerpt;
+pub mod filtering;
 pub mod folds;
 pub mod imports;
 pub mod json;
@@ -26,10 +27,10 @@ pub mod unsupported;
 pub use crate::graph::Place;
 use texgraph_grammar::syntax::Span;
 
-/// One error, ready to be shown.
+/// One error or warning, ready to be shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Its code, `E0103`; `texgraph explain` knows it.
+    /// Its code, `E0103` of an error, `W0801` of a warning; `texgraph explain` knows it.
     pub code: &'static str,
     /// One line of what is wrong, in the user's words.
     pub message: String,
@@ -96,6 +97,16 @@ impl Diagnostic {
             suggestion: None,
             exchange: None,
         }
+    }
+
+    /// Whether the program is right, and only likely not to do what was meant.
+    pub fn is_warning(&self) -> bool {
+        self.code.starts_with('W')
+    }
+
+    /// `error` or `warning`.
+    pub fn level(&self) -> &'static str {
+        if self.is_warning() { "warning" } else { "error" }
     }
 
     /// With another reason than its sentence has.

@@ -49,7 +49,8 @@ fn emit_colored(config: &Config, excerpt: &Excerpt, page: &Page<usize>) -> Resul
 }
 
 fn laid_out(diagnostic: &Diagnostic, excerpt: &Excerpt) -> Page<usize> {
-    let mut page = Page::error().with_code(diagnostic.code).with_message(printable(&diagnostic.message));
+    let page = if diagnostic.is_warning() { Page::warning() } else { Page::error() };
+    let mut page = page.with_code(diagnostic.code).with_message(printable(&diagnostic.message));
     // A place in a file that was never read has nothing to underline.
     if let Some((file, range)) = excerpt.range(diagnostic.place) {
         page = page.with_label(Label::primary(file, range).with_message(printable(&diagnostic.label)));
@@ -85,7 +86,7 @@ pub fn short(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
 fn line(files: &Shown, diagnostic: &Diagnostic) -> String {
     let (line, column) = files.line_and_column(diagnostic.place.file, diagnostic.place.span.start);
     let file = files.sources.get(diagnostic.place).map_or("", |source| source.path.as_str());
-    format!("{file}:{line}:{column}: error[{}]: {}\n", diagnostic.code, diagnostic.message)
+    format!("{file}:{line}:{column}: {}[{}]: {}\n", diagnostic.level(), diagnostic.code, diagnostic.message)
 }
 
 /// The texts with the starts of their lines.
