@@ -135,6 +135,7 @@ impl<'a> Checker<'a> {
     ) -> Option<Slots<'g, 'a>> {
         let mut slots: Slots<'g, 'a> = smallvec![None; head.inputs.len()];
         let mut fine = true;
+        let mut unknown: Option<usize> = None;
         for (i, argument) in given.iter().enumerate() {
             let position = match argument.name {
                 None => Some(i).filter(|i| *i < slots.len()),
@@ -152,7 +153,14 @@ impl<'a> Checker<'a> {
                 }
                 (None, Some(name)) => {
                     let near = self.near(&name.text, head.inputs.iter().map(|i| i.name.text.as_str()));
-                    sentences::unknown_argument(self.place(f, name.span), head.name, &name.text, near)
+                    let at = self.place(f, name.span);
+                    // Several that are not like any input: another node was meant, which is one slip.
+                    if let (None, Some(first)) = (&near, unknown.and_then(|i| self.diagnostics.get_mut(i))) {
+                        first.related.push((at, "no such input either".to_owned()));
+                        continue;
+                    }
+                    unknown = Some(self.diagnostics.len());
+                    sentences::unknown_argument(at, head.name, &name.text, near)
                 }
                 (None, None) if fine => {
                     let inputs: Vec<&str> =
