@@ -1,0 +1,55 @@
+//! The contact sheet: a row for each graph; for some cases what ours, the naive shader, the one by
+//! hand and the reference show.
+
+use crate::Outcome;
+use crate::case::View;
+use crate::measure::bytes;
+use crate::row::Row;
+use image::{Rgb, RgbImage};
+use std::path::Path;
+use texgraph_runtime::picture::Picture;
+
+/// What the columns show, in groups of four.
+const SHOWN: [(View, f64); 3] = [(View::Flat, 67.3), (View::Flat, 2.03), (View::Plane, 16.3)];
+/// Pixels along a side of what is shown of a picture.
+const SIDE: u32 = 96;
+/// Between pictures, and between groups of them.
+const GAPS: [u32; 2] = [2, 8];
+
+/// Writes the sheet.
+pub fn write(rows: &[Row], graphs: &[&str], file: &Path) -> Outcome<()> {
+    let [gap, wide] = GAPS;
+    let group = 4 * (SIDE + gap) + wide;
+    let size = [SHOWN.len() as u32 * group - wide - gap, graphs.len() as u32 * (SIDE + gap) - gap];
+    let mut sheet = RgbImage::from_pixel(size[0], size[1], Rgb([255; 3]));
+    for (down, graph) in (0..).zip(graphs) {
+        for (right, (view, pixels)) in (0..).zip(SHOWN) {
+            let wanted =
+                |row: &&Row| row.graph == *graph && row.case.view == view && row.case.pixels == pixels;
+            let Some(row) = rows.iter().find(wanted) else { continue };
+            for (n, picture) in (0..).zip(four(row)) {
+                let place = [right * group + n * (SIDE + gap), down * (SIDE + gap)];
+                image::imageops::replace(&mut sheet, &picture, place[0].into(), place[1].into());
+            }
+        }
+    }
+    Ok(sheet.save(file)?)
+}
+
+/// Parts of ours, the naive one, the one by hand and the reference.
+fn four(row: &Row) -> Vec<RgbImage> {
+    let part = |pixels: &[[f32; 3]]| {
+        let [width, height] = row.case.size();
+        let whole = RgbImage::from_raw(width, height, bytes(pixels)).unwrap_or_default();
+        let corner = [(width - SIDE) / 2, if row.case.view == View::Plane { 0 } else { (height - SIDE) / 2 }];
+        image::imageops::crop_imm(&whole, corner[0], corner[1], SIDE, SIDE).to_image()
+    };
+    let colors = |picture: &Picture| -> Vec<[f32; 3]> {
+        picture.pixels.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect()
+    };
+    let Some(gpu) = &row.gpu else {
+        return vec![part(&colors(&row.cpu.picture)), part(&row.reference.pixels)];
+    };
+    let drawn = [&gpu.ours, &gpu.naive, &gpu.by_hand].map(|drawn| part(&colors(&drawn.picture)));
+    drawn.into_iter().chain([part(&row.reference.pixels)]).collect()
+}
