@@ -5,6 +5,8 @@
 @group(0) @binding(2) var planks: texture_2d<f32>;
 @group(0) @binding(3) var planks_filtering: sampler;
 
+const TEXELS = 512.0;
+
 @fragment
 fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     let p = place(uv);

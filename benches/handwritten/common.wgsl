@@ -18,6 +18,11 @@ fn fade(p: vec2<f32>) -> f32 {
     return clamp(max(length(dpdx(p)), length(dpdy(p))) - 1.0, 0.0, 1.0);
 }
 
+// The level of detail as it is defined, of a picture with TEXELS a side, which each shader says.
+fn level(right: vec2<f32>, down: vec2<f32>) -> f32 {
+    return log2(max(length(right), length(down)) * TEXELS);
+}
+
 // pcg4d (Jarzynski & Olano, JCGT 2020), as floats below 1.
 fn hash(cell: vec2<i32>, seed: i32) -> vec4<f32> {
     var v = vec4<u32>(vec4(cell, 0, seed)) * 1664525u + 1013904223u;

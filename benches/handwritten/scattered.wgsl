@@ -3,6 +3,8 @@
 @group(0) @binding(0) var rock: texture_2d<f32>;
 @group(0) @binding(1) var filtering: sampler;
 
+const TEXELS = 512.0;
+
 @fragment
 fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     let p = place(uv);

@@ -4,6 +4,8 @@
 @group(0) @binding(1) var filtering: sampler;
 @group(0) @binding(2) var means: texture_2d<f32>;
 
+const TEXELS = 128.0;
+
 @fragment
 fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     let p = place(uv);

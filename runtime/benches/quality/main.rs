@@ -11,6 +11,7 @@
 
 mod borders;
 mod case;
+mod docs;
 mod measure;
 mod reference;
 mod rivals;
@@ -40,10 +41,11 @@ fn main() -> Outcome<()> {
         Err(error) => println!("no GPU, so only the CPU renderer: {error}\n"),
     }
     let rows = draw(&graphs, gpu.as_ref().ok())?;
-    println!("\n{}", targets::verdicts(&rows));
+    println!("\n{}", targets::list(&rows));
     if arguments.iter().any(|argument| argument == "--write") {
-        let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-        sheet::write(&rows, &graphs, &docs.join("images/quality.png"))?;
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+        sheet::write(&rows, &graphs, &folder.join("images/quality.png"))?;
+        docs::write(&rows, &folder.join("quality.md"))?;
     }
     Ok(())
 }

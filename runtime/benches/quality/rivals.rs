@@ -13,6 +13,9 @@ use texgraph_compiler::Program;
 pub enum Rival {
     /// With the gradient of the continuous place, and far away the mean.
     HandWritten,
+    /// The same at the level of detail as it is defined: an adapter's own may be off, and what is
+    /// off to the sharp side is nearer to the reference.
+    AtItsLevel,
     /// The same with `textureSample`, which takes differences within 2×2 pixels, and no `fade`.
     Naive,
 }
@@ -26,12 +29,24 @@ pub fn by_hand(graph: &str, case: Case, program: &Program, rival: Rival) -> Outc
     let shader = read(&format!("{graph}.wgsl"))?;
     let shader = match rival {
         Rival::HandWritten => shader,
+        Rival::AtItsLevel => at_its_level(&shader),
         Rival::Naive => naive(&shader),
     };
     let mut program = program.clone();
     let texture = program.passes.last_mut().ok_or("the program has no pass")?;
     texture.wgsl = format!("{constants}{}{shader}", read("common.wgsl")?);
     Ok(program)
+}
+
+/// The text with levels in place of gradients, but for the sample of what is far.
+fn at_its_level(shader: &str) -> String {
+    let lines = shader.lines().map(|line| match line.strip_suffix(", right, down);") {
+        Some(start) => {
+            start.replace("textureSampleGrad(", "textureSampleLevel(") + ", level(right, down));\n"
+        }
+        None => format!("{line}\n"),
+    });
+    lines.collect()
 }
 
 /// The text without gradients.

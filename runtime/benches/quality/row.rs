@@ -34,6 +34,8 @@ pub struct OnGpu {
     pub ours: Drawn,
     /// The careful person's shader.
     pub by_hand: Drawn,
+    /// The same at the level as it is defined.
+    pub at_its_level: Drawn,
     /// The one without gradients.
     pub naive: Drawn,
 }
@@ -64,6 +66,7 @@ pub fn row(graph: &'static str, case: Case, gpu: Option<&Gpu>) -> Outcome<Row> {
         Ok(OnGpu {
             ours: measured(on_gpu(gpu, &made.program, &made, case)?),
             by_hand: rival(Rival::HandWritten)?,
+            at_its_level: rival(Rival::AtItsLevel)?,
             naive: rival(Rival::Naive)?,
         })
     };

@@ -20,10 +20,15 @@ struct Target {
     unit: &'static str,
 }
 
-const TARGETS: [Target; 4] = [
+const TARGETS: [Target; 5] = [
     Target {
-        says: "PSNR is at least that by hand less 0.05 dB, at every zoom",
+        says: "PSNR is at least that by hand less 0.05 dB, at every zoom, as this adapter draws both",
         margin: |row| Some(gpu(row)?.ours.off.psnr - gpu(row)?.by_hand.off.psnr + AS_GOOD),
+        unit: "dB",
+    },
+    Target {
+        says: "PSNR is at least that by hand less 0.05 dB, at every zoom, at the levels as they are defined",
+        margin: |row| Some(row.cpu.off.psnr - gpu(row)?.at_its_level.off.psnr + AS_GOOD),
         unit: "dB",
     },
     Target {
@@ -52,26 +57,46 @@ fn far(row: &Row) -> bool {
     row.case.pixels < FAR
 }
 
-/// Each target with how many rows meet it, the least margin, and every row that misses it.
-pub fn verdicts(rows: &[Row]) -> String {
-    TARGETS.iter().map(|target| verdict(target, rows)).collect()
+/// How one target fares.
+struct Verdict<'a> {
+    target: &'a Target,
+    asked: usize,
+    /// The margin of each row that misses it.
+    missed: Vec<(&'a Row, f64)>,
+    least: f64,
 }
 
-fn verdict(target: &Target, rows: &[Row]) -> String {
-    let margins: Vec<(&Row, f64)> =
-        rows.iter().filter_map(|row| Some((row, (target.margin)(row)?))).collect();
-    let missed: Vec<&(&Row, f64)> = margins.iter().filter(|(_, margin)| *margin < 0.0).collect();
-    let least = margins.iter().map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min);
-    let mut text = format!(
-        "{}: {} of {} rows, least margin {least:+.2} {}\n",
-        target.says,
-        margins.len() - missed.len(),
-        margins.len(),
-        target.unit
-    );
-    for (row, margin) in missed {
-        let (view, zoom) = (row.case.view.name(), pixels(row.case.pixels));
-        text += &format!("  missed: {}, {view}, {zoom}: {margin:+.2} {}\n", row.graph, target.unit);
+fn verdicts(rows: &[Row]) -> impl Iterator<Item = Verdict<'_>> {
+    TARGETS.iter().map(move |target| {
+        let margins: Vec<(&Row, f64)> =
+            rows.iter().filter_map(|row| Some((row, (target.margin)(row)?))).collect();
+        let least = margins.iter().map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min);
+        let asked = margins.len();
+        let missed = margins.into_iter().filter(|(_, margin)| *margin < 0.0).collect();
+        Verdict { target, asked, missed, least }
+    })
+}
+
+/// Each target with how many rows meet it, the least margin, and every row that misses it.
+pub fn list(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for Verdict { target, asked, missed, least } in verdicts(rows) {
+        let met = asked - missed.len();
+        text +=
+            &format!("{}: {met} of {asked} rows, least margin {least:+.2} {}\n", target.says, target.unit);
+        for (row, margin) in missed {
+            let (view, zoom) = (row.case.view.name(), pixels(row.case.pixels));
+            text += &format!("  missed: {}, {view}, {zoom}: {margin:+.2} {}\n", row.graph, target.unit);
+        }
     }
     text
+}
+
+/// The same in Markdown, without the rows.
+pub fn table(rows: &[Row]) -> String {
+    let head = "| what | met by | least margin |\n| --- | --- | --- |\n".to_owned();
+    verdicts(rows).fold(head, |text, Verdict { target, asked, missed, least }| {
+        let met = asked - missed.len();
+        text + &format!("| {} | {met} of {asked} rows | {least:+.2} {} |\n", target.says, target.unit)
+    })
 }
