@@ -17,7 +17,7 @@ pub fn find(graph: &str, case: Case) -> Outcome<Vec<bool>> {
     let width = seen.size[0] as usize;
     let pixel = |x: usize, y: usize| seen.pixels[y * width + x];
     let is_border = |n: usize| {
-        let (x, y) = (n % width & !1, n / width & !1);
+        let (x, y) = ((n % width) & !1, (n / width) & !1);
         let quad = [pixel(x, y), pixel(x + 1, y), pixel(x, y + 1), pixel(x + 1, y + 1)];
         quad.iter().all(|p| PIXELS.contains(&(1.0 / p[2]))) && quad.iter().any(|p| p[..2] != quad[0][..2])
     };

@@ -38,7 +38,7 @@ const TARGETS: [Target; 5] = [
     },
     Target {
         says: "at 64 cells a pixel the mean colour is within 1/255",
-        margin: |row| far(row).then(|| DRIFT - row.cpu.off.drift),
+        margin: |row| far(row).then_some(DRIFT - row.cpu.off.drift),
         unit: "/255",
     },
     Target {
