@@ -8,8 +8,14 @@ use texgraph_compiler::{Form, Library, Options, Program, check, compile, diagnos
 use texgraph_runtime::project::Project;
 
 /// The pages that show pictures or examples.
-const PAGES: &[&str] =
-    &["README.md", "docs/guide.md", "docs/language.md", "docs/embedding.md", "docs/architecture.md"];
+const PAGES: &[&str] = &[
+    "README.md",
+    "docs/guide.md",
+    "docs/language.md",
+    "docs/embedding.md",
+    "docs/architecture.md",
+    "docs/quality.md",
+];
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

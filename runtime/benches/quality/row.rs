@@ -32,6 +32,8 @@ pub struct Row {
 pub struct OnGpu {
     /// The compiled graph.
     pub ours: Drawn,
+    /// Whether that leaves levels of detail to the adapter, or works them out.
+    pub by_gradient: bool,
     /// The careful person's shader.
     pub by_hand: Drawn,
     /// The same at the level as it is defined.
@@ -65,6 +67,7 @@ pub fn row(graph: &'static str, case: Case, gpu: Option<&Gpu>) -> Outcome<Row> {
         };
         Ok(OnGpu {
             ours: measured(on_gpu(gpu, &made.program, &made, case)?),
+            by_gradient: made.program.texture().wgsl.contains("textureSampleGrad"),
             by_hand: rival(Rival::HandWritten)?,
             at_its_level: rival(Rival::AtItsLevel)?,
             naive: rival(Rival::Naive)?,
