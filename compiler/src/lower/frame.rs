@@ -2,12 +2,14 @@
 
 use super::body::Variable;
 use super::fold::takes_all_steps;
+use super::helper::{self, Drawn};
 use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
 use crate::intrinsic::{Form, MULTIPLY, MULTIPLY_INT};
 use naga::{Expression, Handle};
 use rustc_hash::FxHashMap;
+use std::cell::OnceCell;
 use std::rc::Rc;
 
 /// Unnamed operations inside each other at most.
@@ -33,6 +35,8 @@ pub struct Frame<'g> {
     known: FxHashMap<Value, Constant>,
     /// Of a fold's step: values that have the name of the accumulator they are the next of.
     next: FxHashMap<Value, String>,
+    /// What is read of hashes, once one is met.
+    drawn: OnceCell<FxHashMap<Value, Drawn>>,
 }
 
 impl<'g> Frame<'g> {
@@ -48,6 +52,7 @@ impl<'g> Frame<'g> {
             results: results(function),
             known: FxHashMap::default(),
             next: FxHashMap::default(),
+            drawn: OnceCell::new(),
         }
     }
 
@@ -141,6 +146,25 @@ impl<'g> Frame<'g> {
         self.results.get(&call).copied()
     }
 
+    /// What is read of a hash; none for any other value.
+    pub fn drawn(&self, value: Value) -> Option<Drawn> {
+        if !helper::is_hash(self.function.operation(value)) {
+            return None;
+        }
+        self.drawn.get_or_init(|| helper::drawn(self.function)).get(&value).copied()
+    }
+
+    /// What the author calls a hash, or its only number.
+    pub fn author_of_hash(&self, hash: Value) -> Option<&'g str> {
+        let only = || self.drawn(hash).filter(|drawn| drawn.numbers == 1)?.first;
+        self.author(hash).or_else(|| self.author(only()?))
+    }
+
+    /// The components of a lowered value; of a hash, those that are read.
+    pub fn width(&self, value: Value) -> u8 {
+        self.drawn(value).map_or(self.function.ty(value).width(), |drawn| drawn.numbers)
+    }
+
     /// What a value is called, if it has to have a name.
     pub fn name(&self, value: Value) -> &str {
         let next = || self.next.get(&value).map(String::as_str);
@@ -156,6 +180,8 @@ impl<'g> Frame<'g> {
             | Operation::Input(_)
             | Operation::Call(..)
             | Operation::Fold(_) => true,
+            // A hash that gives one number.
+            Operation::Extract(of, _) => self.values[of.0 as usize] == Some(handle),
             // A call's only output is the call's result.
             Operation::Output(of, _) => {
                 matches!(self.function.operation(*of), Operation::Fold(_)) || self.get(*of) == handle
@@ -238,6 +264,12 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
             Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => add(parts[0], 1),
             Operation::Lookup(table, index) => {
                 add(*index, if table.len() <= MAX_CHOSEN { table.len() as u32 - 1 } else { 1 });
+            }
+            Operation::Builtin(_, arguments) if helper::is_hash(operation) => {
+                match helper::words(function, arguments[0]) {
+                    Some(words) => words.iter().for_each(|v| add(*v, 1)),
+                    None => add(arguments[0], 1),
+                }
             }
             Operation::Extract(vector, _) if !function.names.contains(value) => add(*vector, own),
             _ => operation.for_operands(|v| add(v, 1)),
