@@ -20,10 +20,7 @@ impl Count {
     }
 
     fn max(self, other: Count) -> Count {
-        Count {
-            fetches: self.fetches.max(other.fetches),
-            arithmetic: self.arithmetic.max(other.arithmetic),
-        }
+        Count { fetches: self.fetches.max(other.fetches), arithmetic: self.arithmetic.max(other.arithmetic) }
     }
 }
 
@@ -52,7 +49,9 @@ impl Counting<'_> {
         for statement in block {
             match statement {
                 Statement::Emit(range) => {
-                    range.clone().for_each(|expression| count.add(self.expression(function, info, expression)));
+                    range
+                        .clone()
+                        .for_each(|expression| count.add(self.expression(function, info, expression)));
                 }
                 Statement::Call { function, .. } => {
                     let callee = &self.module.functions[*function];
@@ -83,7 +82,9 @@ impl Counting<'_> {
                 return Count { fetches: 1, arithmetic: 0 };
             }
             Expression::Math { fun: MathFunction::Dot, arg, .. } => 2 * width(*arg) - 1,
-            Expression::Math { fun: MathFunction::Length | MathFunction::Distance, arg, .. } => 2 * width(*arg),
+            Expression::Math { fun: MathFunction::Length | MathFunction::Distance, arg, .. } => {
+                2 * width(*arg)
+            }
             Expression::Math { fun: MathFunction::Clamp | MathFunction::Mix, arg, .. } => 2 * width(*arg),
             Expression::Relational { argument, .. } => width(*argument),
             Expression::Binary { .. }
@@ -93,7 +94,8 @@ impl Counting<'_> {
             | Expression::Select { .. } => width(handle),
             Expression::As { expr, kind, convert: Some(_) } => {
                 let from = info[*expr].ty.inner_with(&self.module.types).scalar_kind();
-                let is_real = from != Some(*kind) && (from == Some(ScalarKind::Float) || *kind == ScalarKind::Float);
+                let is_real =
+                    from != Some(*kind) && (from == Some(ScalarKind::Float) || *kind == ScalarKind::Float);
                 if is_real { width(handle) } else { 0 }
             }
             _ => 0,

@@ -2,11 +2,11 @@
 
 use super::body::Variable;
 use super::fold::takes_all_steps;
-use super::helper::{self, Drawn};
+use super::helper::{self, Drawn, Draws, Pick};
 use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
-use crate::intrinsic::{Form, MULTIPLY, MULTIPLY_INT};
+use crate::intrinsic::{Form, MULTIPLY, MULTIPLY_INT, TO_FLOAT};
 use naga::{Expression, Handle};
 use rustc_hash::FxHashMap;
 use std::cell::OnceCell;
@@ -36,7 +36,7 @@ pub struct Frame<'g> {
     /// Of a fold's step: values that have the name of the accumulator they are the next of.
     next: FxHashMap<Value, String>,
     /// What is read of hashes, once one is met.
-    drawn: OnceCell<FxHashMap<Value, Drawn>>,
+    draws: OnceCell<Draws>,
 }
 
 impl<'g> Frame<'g> {
@@ -52,7 +52,7 @@ impl<'g> Frame<'g> {
             results: results(function),
             known: FxHashMap::default(),
             next: FxHashMap::default(),
-            drawn: OnceCell::new(),
+            draws: OnceCell::new(),
         }
     }
 
@@ -151,18 +151,23 @@ impl<'g> Frame<'g> {
         if !helper::is_hash(self.function.operation(value)) {
             return None;
         }
-        self.drawn.get_or_init(|| helper::drawn(self.function)).get(&value).copied()
+        self.draws.get_or_init(|| Draws::of(self.function)).hashes.get(&value).copied()
+    }
+
+    /// What a value is on the way to a pick.
+    pub fn pick(&self, value: Value) -> Option<Pick> {
+        self.draws.get()?.picks.get(&value).copied()
     }
 
     /// What the author calls a hash, or its only number.
     pub fn author_of_hash(&self, hash: Value) -> Option<&'g str> {
-        let only = || self.drawn(hash).filter(|drawn| drawn.numbers == 1)?.first;
+        let only = || self.drawn(hash).filter(|drawn| drawn.numbers <= 1)?.first;
         self.author(hash).or_else(|| self.author(only()?))
     }
 
     /// The components of a lowered value; of a hash, those that are read.
     pub fn width(&self, value: Value) -> u8 {
-        self.drawn(value).map_or(self.function.ty(value).width(), |drawn| drawn.numbers)
+        self.drawn(value).map_or(self.function.ty(value).width(), |drawn| drawn.numbers.max(1))
     }
 
     /// What a value is called, if it has to have a name.
@@ -262,6 +267,10 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
                 add(fold.steps, if takes_all_steps(function, fold) { 2 } else { 1 });
             }
             Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => add(parts[0], 1),
+            Operation::Builtin(TO_FLOAT, of) => match splat_of(function, of[0]) {
+                Some(Splat::Value(scalar)) => add(scalar, 1),
+                _ => add(of[0], 1),
+            },
             Operation::Lookup(table, index) => {
                 add(*index, if table.len() <= MAX_CHOSEN { table.len() as u32 - 1 } else { 1 });
             }

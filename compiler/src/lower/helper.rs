@@ -4,7 +4,7 @@ use super::Lowering;
 use super::body::Body;
 use super::types::{Types, numeric, size};
 use crate::graph::{Constant, Function, Operation, Value};
-use crate::intrinsic::{Form, Helper};
+use crate::intrinsic::{Form, Helper, MULTIPLY, TO_INT};
 use crate::naming::{Names, Scope};
 use naga::{BinaryOperator, Expression, Handle, Literal, Span};
 use rustc_hash::FxHashMap;
@@ -15,17 +15,37 @@ use smol_str::SmolStr;
 pub struct Hash {
     /// The words that it takes, 1 to 4; those after them are 0.
     pub words: u8,
-    /// The numbers that it gives, 1 to 4; nobody reads those after them.
+    /// The numbers that it gives, 1 to 4; nobody reads those after them. With 0 it gives the word that
+    /// the first is made of.
     pub numbers: u8,
 }
 
 /// What is read of a hash in a function.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub struct Drawn {
-    /// The numbers up to the last that is read, 1 to 4.
+    /// The numbers up to the last that is read, 1 to 4; 0 for a hash that only picks.
     pub numbers: u8,
     /// The first of them on its own, if it is read so.
     pub first: Option<Value>,
+}
+
+/// A step from a hash to a pick, one of a power of two: truncated, a number of [0, 1) times that power
+/// is the upper bits of the word that it is made of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Pick {
+    /// The product: the word stands for it.
+    Product,
+    /// The pick: so many upper bits.
+    Upper(u32),
+}
+
+/// What is read of all hashes of a function.
+#[derive(Default)]
+pub struct Draws {
+    /// By the hash.
+    pub hashes: FxHashMap<Value, Drawn>,
+    /// Products and picks of hashes that only pick.
+    pub picks: FxHashMap<Value, Pick>,
 }
 
 /// Rounds mix words that differ from shader to shader with words that are the same in all.
@@ -41,7 +61,7 @@ const INCREMENT: u32 = 1_013_904_223;
 impl Hash {
     /// All that can be asked for.
     pub fn all() -> impl Iterator<Item = Hash> {
-        (1..=4).flat_map(|words| (1..=4).map(move |numbers| Hash { words, numbers }))
+        (1..=4).flat_map(|words| (0..=4).map(move |numbers| Hash { words, numbers }))
     }
 }
 
@@ -60,29 +80,102 @@ pub fn is_hash(operation: &Operation) -> bool {
     matches!(intrinsic.row().form, Form::Helper(Helper::Hash))
 }
 
-/// What is read of every hash of a function.
-pub fn drawn(function: &Function) -> FxHashMap<Value, Drawn> {
-    let hashes = function.iter().filter(|(_, operation)| is_hash(operation));
-    let mut drawn: FxHashMap<Value, Drawn> =
-        hashes.map(|(value, _)| (value, Drawn { numbers: 1, first: None })).collect();
-    for (value, operation) in function.iter() {
-        if let Operation::Extract(of, i) = operation {
-            if let Some(drawn) = drawn.get_mut(of) {
-                drawn.numbers = drawn.numbers.max(i + 1);
-                drawn.first = drawn.first.or((*i == 0).then_some(value));
-            }
-        } else {
-            operation.for_operands(|v| all_of(&mut drawn, v));
-        }
-    }
-    function.outputs.iter().for_each(|(_, value)| all_of(&mut drawn, *value));
-    drawn
+/// A hash whose first number is read on its own, and what becomes of that.
+struct Chain {
+    hash: Value,
+    product: Option<(Value, u32)>,
+    pick: Option<Value>,
+    /// How often the number and the product are read.
+    reads: u32,
 }
 
-fn all_of(drawn: &mut FxHashMap<Value, Drawn>, value: Value) {
-    if let Some(drawn) = drawn.get_mut(&value) {
-        drawn.numbers = 4;
+/// A function being looked through.
+#[derive(Default)]
+struct Looking {
+    draws: Draws,
+    /// By the number.
+    chains: FxHashMap<Value, Chain>,
+    /// The number that each product is made of.
+    products: FxHashMap<Value, Value>,
+}
+
+impl Draws {
+    /// Looks through a function once.
+    pub fn of(function: &Function) -> Draws {
+        let mut looking = Looking::default();
+        for (value, operation) in function.iter() {
+            looking.operation(function, value, operation);
+        }
+        function.outputs.iter().for_each(|(_, value)| looking.read(*value));
+        let Looking { mut draws, chains, .. } = looking;
+        for (first, chain) in chains {
+            let Chain { hash, product: Some((product, bits)), pick: Some(pick), reads: 2 } = chain else {
+                continue;
+            };
+            let is_named = [first, product].iter().any(|value| function.names.contains(*value));
+            let drawn = draws.hashes.get_mut(&hash).filter(|drawn| drawn.numbers == 1 && !is_named);
+            if let Some(drawn) = drawn {
+                drawn.numbers = 0;
+                draws.picks.extend([(product, Pick::Product), (pick, Pick::Upper(bits))]);
+            }
+        }
+        draws
     }
+}
+
+impl Looking {
+    fn operation(&mut self, function: &Function, value: Value, operation: &Operation) {
+        match operation {
+            Operation::Extract(of, i) if self.draws.hashes.contains_key(of) => {
+                self.extract(*of, *i, value);
+                return;
+            }
+            Operation::Builtin(MULTIPLY, of) => {
+                let bits = power_of_two(function, of[1]);
+                if let (Some(bits), Some(chain)) = (bits, self.chains.get_mut(&of[0])) {
+                    chain.product = Some((value, bits));
+                    self.products.insert(value, of[0]);
+                }
+            }
+            Operation::Builtin(TO_INT, of) => {
+                let chain = self.products.get(&of[0]).and_then(|first| self.chains.get_mut(first));
+                chain.into_iter().for_each(|chain| chain.pick = Some(value));
+            }
+            _ if is_hash(operation) => {
+                self.draws.hashes.insert(value, Drawn { numbers: 1, first: None });
+            }
+            _ => {}
+        }
+        operation.for_operands(|v| self.read(v));
+    }
+
+    fn extract(&mut self, hash: Value, i: u8, value: Value) {
+        if let Some(drawn) = self.draws.hashes.get_mut(&hash) {
+            drawn.numbers = drawn.numbers.max(i + 1);
+            if i == 0 {
+                drawn.first = Some(value);
+                self.chains.insert(value, Chain { hash, product: None, pick: None, reads: 0 });
+            }
+        }
+    }
+
+    fn read(&mut self, value: Value) {
+        if let Some(drawn) = self.draws.hashes.get_mut(&value) {
+            drawn.numbers = 4;
+        }
+        let first = self.products.get(&value).unwrap_or(&value);
+        if let Some(chain) = self.chains.get_mut(first) {
+            chain.reads += 1;
+        }
+    }
+}
+
+/// The exponent of a power of two that is known, 1 to 24: a random number has as many bits.
+fn power_of_two(function: &Function, value: Value) -> Option<u32> {
+    let Operation::Constant(constant) = function.operation(value) else { return None };
+    let number = constant.float(0) as u32;
+    let exponent = number.checked_ilog2().filter(|exponent| (1..=24).contains(exponent))?;
+    (constant.float(0) == (1_u32 << exponent) as f32).then_some(exponent)
 }
 
 impl Lowering<'_> {
@@ -102,10 +195,12 @@ impl Lowering<'_> {
     /// pcg4d: a linear congruential step, then twice a round of multiply-adds, xor-shift between.
     fn hash(&mut self, name: SmolStr, hash: Hash) -> naga::Function {
         let types = &mut self.module.types;
-        let [taken, given] = [(naga::Scalar::I32, hash.words), (naga::Scalar::F32, hash.numbers)]
+        let numbers = hash.numbers.max(1);
+        let given = if hash.numbers == 0 { naga::Scalar::U32 } else { naga::Scalar::F32 };
+        let [taken, given] = [(naga::Scalar::I32, hash.words), (given, numbers)]
             .map(|(scalar, width)| Types::of(types, numeric(scalar, width)));
         let [three, four] = [3, 4].map(|width| Types::of(types, numeric(naga::Scalar::U32, width)));
-        let result = Types::of(types, numeric(naga::Scalar::U32, hash.numbers));
+        let result = Types::of(types, numeric(naga::Scalar::U32, numbers));
         let mut scope = Scope::inside(&self.prefix);
         let argument = self.names.placeholder(scope.name("v"));
         let mut function = naga::Function {
@@ -123,7 +218,7 @@ impl Lowering<'_> {
         let seeded = b.parts(seeded, hash.words);
         let [x, y, z, w] = b.round(&mut self.names, seeded, 4);
         // The first number alone does not need the third word.
-        let (stirred, ty) = if hash.numbers == 1 { (vec![x, y, w], three) } else { (vec![x, y, z, w], four) };
+        let (stirred, ty) = if numbers == 1 { (vec![x, y, w], three) } else { (vec![x, y, z, w], four) };
         let width = stirred.len() as u8;
         let components = stirred.into_iter().map(|word| b.word(word)).collect();
         let first = b.add(Expression::Compose { ty, components });
@@ -132,14 +227,17 @@ impl Lowering<'_> {
         let mixed = b.binary(BinaryOperator::ExclusiveOr, first, shifted);
         b.name(&mut self.names, mixed, "mixed");
         let mut mixed = b.parts(mixed, width);
-        if hash.numbers == 1 {
+        if numbers == 1 {
             mixed.swap(2, 3);
         }
-        let second = b.round(&mut self.names, mixed, hash.numbers);
-        let components =
-            second.into_iter().take(usize::from(hash.numbers)).map(|word| b.word(word)).collect();
+        let second = b.round(&mut self.names, mixed, numbers);
+        let components = second.into_iter().take(usize::from(numbers)).map(|word| b.word(word)).collect();
         let second = b.vector(result, components);
-        let upper = b.with_word(BinaryOperator::ShiftRight, second, 8, hash.numbers);
+        if hash.numbers == 0 {
+            b.finish(second);
+            return function;
+        }
+        let upper = b.with_word(BinaryOperator::ShiftRight, second, 8, numbers);
         let upper = b.convert(upper, naga::ScalarKind::Float);
         let unit = b.literal(Literal::F32(1.0 / 16_777_216.0));
         let result = b.binary(BinaryOperator::Multiply, upper, unit);

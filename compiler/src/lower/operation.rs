@@ -3,10 +3,10 @@
 use super::Lowering;
 use super::body::Body;
 use super::frame::{Frame, Splat, has_sampler, splat_of};
-use super::helper::{self, Hash};
+use super::helper::{self, Hash, Pick};
 use super::types::{numeric, scalar, size};
 use crate::graph::{Axis, Constant, FunctionId, Level, Operation, Scalar, Slot, Type, Value};
-use crate::intrinsic::{Form, Helper, Intrinsic, MULTIPLY, MULTIPLY_INT};
+use crate::intrinsic::{Form, Helper, Intrinsic, MULTIPLY, MULTIPLY_INT, TO_FLOAT};
 use naga::{BinaryOperator, Expression, Handle, Literal, MathFunction, ScalarKind, SwizzleComponent};
 
 impl Lowering<'_> {
@@ -238,6 +238,13 @@ impl Lowering<'_> {
         {
             return product;
         }
+        if let Some(pick) = frame.pick(value) {
+            return self.pick(body, frame.get(arguments[0]), pick);
+        }
+        if let (TO_FLOAT, Some(Splat::Value(int))) = (intrinsic, splat_of(frame.function, arguments[0])) {
+            let value = body.convert(frame.get(int), ScalarKind::Float);
+            return body.add(Expression::Splat { size: size(frame.width(arguments[0])), value });
+        }
         if let Some(drawn) = frame.drawn(value) {
             return self.random(body, frame, value, arguments[0], drawn.numbers);
         }
@@ -273,6 +280,14 @@ impl Lowering<'_> {
             (Form::Helper(Helper::Hash), ..) => unreachable!("a hash is called"),
             (Form::Expand(_), ..) => unreachable!("expanded before lowering"),
         }
+    }
+
+    /// The next of a word on the way to a pick.
+    fn pick(&mut self, body: &mut Body, word: Handle<Expression>, pick: Pick) -> Handle<Expression> {
+        let Pick::Upper(bits) = pick else { return word };
+        let shift = body.literal(Literal::U32(32 - bits));
+        let upper = body.binary(BinaryOperator::ShiftRight, word, shift);
+        body.convert(upper, ScalarKind::Sint)
     }
 
     /// So many random numbers.
