@@ -3,6 +3,7 @@
 use super::body::Variable;
 use super::fold::takes_all_steps;
 use super::helper::{self, Drawn, Draws, Pick};
+use super::slope::Slopes;
 use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
@@ -35,15 +36,23 @@ pub struct Frame<'g> {
     known: FxHashMap<Value, Constant>,
     /// Of a fold's step: values that have the name of the accumulator they are the next of.
     next: FxHashMap<Value, String>,
+    /// Products that are derivatives of others.
+    pub slopes: Slopes,
     /// What is read of hashes, once one is met.
     draws: OnceCell<Draws>,
 }
 
 impl<'g> Frame<'g> {
     pub fn new(function: &'g Function, regions: Regions) -> Frame<'g> {
+        Frame::with_slopes(function, regions, Slopes::default())
+    }
+
+    /// The frame of a function some of whose products are slopes of others.
+    pub fn with_slopes(function: &'g Function, regions: Regions, slopes: Slopes) -> Frame<'g> {
         Frame {
             function,
-            uses: uses(function, &regions),
+            uses: uses(function, &regions, &slopes),
+            slopes,
             regions: Rc::new(regions),
             values: vec![None; function.values.len()],
             nest: vec![0; function.values.len()],
@@ -241,7 +250,7 @@ fn hint(operation: &Operation) -> &'static str {
 
 /// How often each value is written. What is a scalar in every component is written as that scalar,
 /// once; a branch writes its condition once; a loop counts as many times.
-fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
+fn uses(function: &Function, regions: &Regions, slopes: &Slopes) -> Vec<u32> {
     let mut uses = vec![0; function.values.len()];
     for (_, value) in &function.outputs {
         uses[value.0 as usize] += 1;
@@ -254,6 +263,10 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
         let mut add = |v: Value, times: u32| uses[v.0 as usize] += times;
         match operation {
             Operation::Builtin(MULTIPLY | MULTIPLY_INT, factors) => {
+                if let Some((product, _)) = slopes.get(&value) {
+                    add(*product, 1);
+                    continue;
+                }
                 factors.iter().for_each(|v| add(written_factor(function, factors, *v), 1));
             }
             Operation::Select(condition, yes, no) => {

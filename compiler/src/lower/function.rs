@@ -2,6 +2,7 @@
 
 use super::body::Body;
 use super::frame::{Argument, Frame, has_sampler};
+use super::slope::{Slopes, slopes};
 use super::types::Types;
 use super::{Callee, Lowering, Member};
 use crate::contract::Reads;
@@ -35,7 +36,10 @@ impl<'a> Lowering<'a> {
         };
         let mut body = Body::new(&mut function, scope);
         let first = if is_entry { draw_rate(source, &self.weights) } else { Vec::new() };
-        let mut frame = Frame::new(source, Regions::inside(source, &self.weights, 0, &first));
+        let regions = Regions::inside(source, &self.weights, 0, &first);
+        let takes_slopes = is_entry && self.manifest.gradients.is_empty();
+        let slopes = if takes_slopes { slopes(source, &regions, &first) } else { Slopes::default() };
+        let mut frame = Frame::with_slopes(source, regions, slopes);
         let inputs = self.bind_arguments(&mut body, source, &reads, is_entry);
         frame.bind(&inputs);
         self.numbers(&mut body, &mut frame);

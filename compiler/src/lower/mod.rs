@@ -14,6 +14,7 @@ mod helper;
 mod link;
 mod operation;
 mod outline;
+mod slope;
 mod table;
 mod types;
 mod wrap;

@@ -74,16 +74,8 @@ impl Lowering<'_> {
                 _ => frame.get(*call),
             },
             Operation::Derivative(v, axis, _) => {
-                if let Some(given) = body.gradients.get(&(frame.get(*v), *axis)) {
-                    return *given;
-                }
-                let axis = match axis {
-                    Axis::X => naga::DerivativeAxis::X,
-                    Axis::Y => naga::DerivativeAxis::Y,
-                };
-                let ctrl = naga::DerivativeControl::None;
-                let expr = frame.get(*v);
-                body.add(Expression::Derivative { axis, ctrl, expr })
+                let given = body.gradients.get(&(frame.get(*v), *axis)).copied();
+                given.unwrap_or_else(|| derivative(body, frame.get(*v), *axis))
             }
         }
     }
@@ -231,6 +223,9 @@ impl Lowering<'_> {
         intrinsic: Intrinsic,
         arguments: &[Value],
     ) -> Handle<Expression> {
+        if let Some((product, axis)) = frame.slopes.get(&value) {
+            return derivative(body, frame.get(*product), *axis);
+        }
         if let [a, b] = arguments
             && matches!(intrinsic, MULTIPLY | MULTIPLY_INT)
             && let Some(product) =
@@ -370,6 +365,14 @@ impl Lowering<'_> {
         let ty = super::Types::of(&mut self.module.types, numeric(scalar(Scalar::Float), 4));
         body.add(Expression::Compose { ty, components })
     }
+}
+
+fn derivative(body: &mut Body, expr: Handle<Expression>, axis: Axis) -> Handle<Expression> {
+    let axis = match axis {
+        Axis::X => naga::DerivativeAxis::X,
+        Axis::Y => naga::DerivativeAxis::Y,
+    };
+    body.add(Expression::Derivative { axis, ctrl: naga::DerivativeControl::None, expr })
 }
 
 /// A component of a known number.
