@@ -13,6 +13,9 @@ use rustc_hash::FxHashMap;
 use std::cell::OnceCell;
 use std::rc::Rc;
 
+/// What a derivative without a name of its own is called.
+const SLOPE: &str = "slope";
+
 /// Unnamed operations inside each other at most.
 const MAX_NEST: u8 = 16;
 
@@ -49,9 +52,10 @@ impl<'g> Frame<'g> {
 
     /// The frame of a function some of whose products are slopes of others.
     pub fn with_slopes(function: &'g Function, regions: Regions, slopes: Slopes) -> Frame<'g> {
+        let draws = OnceCell::new();
         Frame {
             function,
-            uses: uses(function, &regions, &slopes),
+            uses: uses(function, &regions, &slopes, &draws),
             slopes,
             regions: Rc::new(regions),
             values: vec![None; function.values.len()],
@@ -61,7 +65,7 @@ impl<'g> Frame<'g> {
             results: results(function),
             known: FxHashMap::default(),
             next: FxHashMap::default(),
-            draws: OnceCell::new(),
+            draws,
         }
     }
 
@@ -132,7 +136,8 @@ impl<'g> Frame<'g> {
         operation.for_operands(|v| nest = nest.max(self.nest[v.0 as usize]));
         let nest = nest.saturating_add(1);
         let shared = !is_cheap(operation) && self.uses[value.0 as usize] > 1;
-        if self.author(value).is_some() || is_eager(operation) || nest >= MAX_NEST || shared {
+        let is_eager = is_eager(operation) || self.slopes.contains_key(&value);
+        if self.author(value).is_some() || is_eager || nest >= MAX_NEST || shared {
             return true;
         }
         self.nest[value.0 as usize] = nest;
@@ -182,7 +187,11 @@ impl<'g> Frame<'g> {
     /// What a value is called, if it has to have a name.
     pub fn name(&self, value: Value) -> &str {
         let next = || self.next.get(&value).map(String::as_str);
-        self.author(value).or_else(next).unwrap_or_else(|| hint(self.function.operation(value)))
+        let hint = || match self.slopes.contains_key(&value) {
+            true => SLOPE,
+            false => hint(self.function.operation(value)),
+        };
+        self.author(value).or_else(next).unwrap_or_else(hint)
     }
 
     /// Known, or held by a name or variable of its own.
@@ -243,14 +252,14 @@ fn hint(operation: &Operation) -> &'static str {
         Operation::Select(..) => "chosen",
         Operation::Compose(_) => "vector",
         Operation::Lookup(..) => "entry",
-        Operation::Derivative(..) => "slope",
+        Operation::Derivative(..) => SLOPE,
         _ => "t",
     }
 }
 
 /// How often each value is written. What is a scalar in every component is written as that scalar,
 /// once; a branch writes its condition once; a loop counts as many times.
-fn uses(function: &Function, regions: &Regions, slopes: &Slopes) -> Vec<u32> {
+fn uses(function: &Function, regions: &Regions, slopes: &Slopes, draws: &OnceCell<Draws>) -> Vec<u32> {
     let mut uses = vec![0; function.values.len()];
     for (_, value) in &function.outputs {
         uses[value.0 as usize] += 1;
@@ -288,7 +297,8 @@ fn uses(function: &Function, regions: &Regions, slopes: &Slopes) -> Vec<u32> {
                 add(*index, if table.len() <= MAX_CHOSEN { table.len() as u32 - 1 } else { 1 });
             }
             Operation::Builtin(_, arguments) if helper::is_hash(operation) => {
-                match helper::words(function, arguments[0]) {
+                let drawn = draws.get_or_init(|| Draws::of(function)).hashes.get(&value);
+                match drawn.and_then(|drawn| helper::words(function, arguments[0], *drawn)) {
                     Some(words) => words.iter().for_each(|v| add(*v, 1)),
                     None => add(arguments[0], 1),
                 }

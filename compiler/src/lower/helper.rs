@@ -4,7 +4,7 @@ use super::Lowering;
 use super::body::Body;
 use super::types::{Types, numeric, size};
 use crate::graph::{Constant, Function, Operation, Value};
-use crate::intrinsic::{Form, Helper, MULTIPLY, TO_INT};
+use crate::intrinsic::{HASH4, MULTIPLY, TO_INT};
 use crate::naming::{Names, Scope};
 use naga::{BinaryOperator, Expression, Handle, Literal, Span};
 use rustc_hash::FxHashMap;
@@ -13,17 +13,18 @@ use smol_str::SmolStr;
 /// A hash as it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hash {
-    /// The words that it takes, 1 to 4; those after them are 0.
+    /// The words that it takes, 1 to 4; those after them are 0. All 4 where it gives 4 numbers: one
+    /// function serves all who want so many.
     pub words: u8,
-    /// The numbers that it gives, 1 to 4; nobody reads those after them. With 0 it gives the word that
-    /// the first is made of.
+    /// The numbers that it gives: all 4, or 1 where nobody reads the others. With 0 it gives the word
+    /// that the first is made of.
     pub numbers: u8,
 }
 
 /// What is read of a hash in a function.
 #[derive(Clone, Copy)]
 pub struct Drawn {
-    /// The numbers up to the last that is read, 1 to 4; 0 for a hash that only picks.
+    /// 4, or 1 where only the first is read; 0 for a hash that only picks.
     pub numbers: u8,
     /// The first of them on its own, if it is read so.
     pub first: Option<Value>,
@@ -61,13 +62,18 @@ const INCREMENT: u32 = 1_013_904_223;
 impl Hash {
     /// All that can be asked for.
     pub fn all() -> impl Iterator<Item = Hash> {
-        (1..=4).flat_map(|words| (0..=4).map(move |numbers| Hash { words, numbers }))
+        (1..=4)
+            .flat_map(|words| [0, 1].map(|numbers| Hash { words, numbers }))
+            .chain([Hash { words: 4, numbers: 4 }])
     }
 }
 
-/// The words of a hash that are not 0, with those before them, where some are left out.
-pub fn words(function: &Function, argument: Value) -> Option<&[Value]> {
+/// The words that a hash takes of its argument's, where it does not take all.
+pub fn words(function: &Function, argument: Value, drawn: Drawn) -> Option<&[Value]> {
     let Operation::Compose(parts) = function.operation(argument) else { return None };
+    if drawn.numbers > 1 {
+        return None;
+    }
     let zero = Constant::ints(&[0]);
     let is_zero = |part: &Value| *function.operation(*part) == Operation::Constant(zero);
     let given = parts.iter().rposition(|part| !is_zero(part)).map_or(1, |last| last + 1);
@@ -76,8 +82,7 @@ pub fn words(function: &Function, argument: Value) -> Option<&[Value]> {
 
 /// Whether an operation is a hash.
 pub fn is_hash(operation: &Operation) -> bool {
-    let Operation::Builtin(intrinsic, _) = operation else { return false };
-    matches!(intrinsic.row().form, Form::Helper(Helper::Hash))
+    matches!(operation, Operation::Builtin(HASH4, _))
 }
 
 /// A hash whose first number is read on its own, and what becomes of that.
@@ -151,8 +156,9 @@ impl Looking {
 
     fn extract(&mut self, hash: Value, i: u8, value: Value) {
         if let Some(drawn) = self.draws.hashes.get_mut(&hash) {
-            drawn.numbers = drawn.numbers.max(i + 1);
-            if i == 0 {
+            if i > 0 {
+                drawn.numbers = 4;
+            } else {
                 drawn.first = Some(value);
                 self.chains.insert(value, Chain { hash, product: None, pick: None, reads: 0 });
             }

@@ -3,7 +3,7 @@
 use super::Lowering;
 use super::body::Body;
 use super::frame::{Frame, Splat, has_sampler, splat_of};
-use super::helper::{self, Hash, Pick};
+use super::helper::{self, Drawn, Hash, Pick};
 use super::types::{numeric, scalar, size};
 use crate::graph::{Axis, Constant, FunctionId, Level, Operation, Scalar, Slot, Type, Value};
 use crate::intrinsic::{Form, Helper, Intrinsic, MULTIPLY, MULTIPLY_INT, TO_FLOAT};
@@ -241,7 +241,7 @@ impl Lowering<'_> {
             return body.add(Expression::Splat { size: size(frame.width(arguments[0])), value });
         }
         if let Some(drawn) = frame.drawn(value) {
-            return self.random(body, frame, value, arguments[0], drawn.numbers);
+            return self.random(body, frame, value, arguments[0], drawn);
         }
         let mut operands = arguments.iter().map(|v| self.operand(body, frame, *v));
         let Some(arg) = operands.next() else { unreachable!("an intrinsic has an argument") };
@@ -285,16 +285,16 @@ impl Lowering<'_> {
         body.convert(upper, ScalarKind::Sint)
     }
 
-    /// So many random numbers.
+    /// Random numbers, those that are read.
     fn random(
         &mut self,
         body: &mut Body,
         frame: &Frame,
         value: Value,
         argument: Value,
-        numbers: u8,
+        drawn: Drawn,
     ) -> Handle<Expression> {
-        let (argument, words) = match helper::words(frame.function, argument) {
+        let (argument, words) = match helper::words(frame.function, argument, drawn) {
             Some([single]) => (frame.get(*single), 1),
             Some(words) => {
                 let ty = Type::Vector(Scalar::Int, words.len() as u8);
@@ -302,7 +302,7 @@ impl Lowering<'_> {
             }
             None => (self.operand(body, frame, argument), 4),
         };
-        let function = self.helper(Hash { words, numbers });
+        let function = self.helper(Hash { words, numbers: drawn.numbers });
         body.call(function, vec![argument], frame.author_of_hash(value).unwrap_or("random"))
     }
 

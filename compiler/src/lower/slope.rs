@@ -1,6 +1,6 @@
 //! Derivatives of scaled inputs: the slope of a place times a number that is the same for a whole draw
-//! is the slope of the product, which is there anyway. As one writes it by hand, this saves the
-//! multiplications.
+//! is the slope of the product, which is there anyway. Where nothing else reads the place's own slope,
+//! the multiplication is saved, as it is when one writes it by hand.
 
 use crate::graph::regions::Regions;
 use crate::graph::{Axis, Function, Operation, Value};
@@ -16,8 +16,8 @@ struct Looking<'a> {
     regions: &'a Regions,
     /// Which values are the same for a whole draw.
     per_draw: &'a [bool],
-    /// Derivatives, and whether nothing but such products reads them.
-    derivatives: FxHashMap<Value, (Value, Axis, bool)>,
+    /// Derivatives, and how often each is read.
+    derivatives: FxHashMap<Value, (Value, Axis, u32)>,
     /// Products of what has derivatives, by the factors.
     products: FxHashMap<(Value, Value), Value>,
     slopes: Slopes,
@@ -26,7 +26,11 @@ struct Looking<'a> {
 /// Those of an entry. Both products stand at the top, where derivatives may be taken.
 pub fn slopes(function: &Function, regions: &Regions, per_draw: &[bool]) -> Slopes {
     let derivatives = function.iter().filter_map(|(value, operation)| match operation {
+<<<<<<< HEAD
         Operation::Derivative(of, axis, _) => Some((value, (*of, *axis, true))),
+=======
+        Operation::Derivative(of, axis, _) => Some((value, (*of, *axis, 0))),
+>>>>>>> 652e2c5 (One hash of four numbers serves all; slopes of products only where they save something; snapshots)
         _ => None,
     });
     let derivatives: FxHashMap<_, _> = derivatives.collect();
@@ -36,11 +40,11 @@ pub fn slopes(function: &Function, regions: &Regions, per_draw: &[bool]) -> Slop
     let (products, slopes) = Default::default();
     let mut looking = Looking { function, regions, per_draw, derivatives, products, slopes };
     function.iter().for_each(|(value, operation)| looking.operation(value, operation));
-    function.outputs.iter().for_each(|(_, value)| looking.spoil(*value));
+    function.outputs.iter().for_each(|(_, value)| looking.read(*value));
     let Looking { derivatives, mut slopes, .. } = looking;
     slopes.retain(|value, _| match function.operation(*value) {
         Operation::Builtin(_, factors) => {
-            factors.iter().all(|v| derivatives.get(v).is_none_or(|(_, _, is_only_scaled)| *is_only_scaled))
+            factors.iter().all(|v| derivatives.get(v).is_none_or(|(_, _, reads)| *reads == 1))
         }
         _ => false,
     });
@@ -60,14 +64,13 @@ impl Looking<'_> {
                 if let Some((of, axis, _)) = self.derivatives.get(&factor) {
                     if let Some(product) = self.products.get(&(*of, scale)) {
                         self.slopes.insert(value, (*product, *axis));
-                        return;
                     }
                 } else {
                     self.products.insert((factor, scale), value);
                 }
             }
         }
-        operation.for_operands(|v| self.spoil(v));
+        operation.for_operands(|v| self.read(v));
     }
 
     fn is_per_draw(&self, value: Value) -> bool {
@@ -75,10 +78,9 @@ impl Looking<'_> {
             || matches!(self.function.operation(value), Operation::Constant(_))
     }
 
-    /// A derivative is needed for itself.
-    fn spoil(&mut self, value: Value) {
-        if let Some((_, _, is_only_scaled)) = self.derivatives.get_mut(&value) {
-            *is_only_scaled = false;
+    fn read(&mut self, value: Value) {
+        if let Some((_, _, reads)) = self.derivatives.get_mut(&value) {
+            *reads += 1;
         }
     }
 }
