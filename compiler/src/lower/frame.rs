@@ -3,7 +3,7 @@
 use super::body::Variable;
 use super::fold::takes_all_steps;
 use super::helper::{self, Drawn, Draws, Pick};
-use super::slope::Slopes;
+use super::slope::{Slope, slopes};
 use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
@@ -40,23 +40,18 @@ pub struct Frame<'g> {
     /// Of a fold's step: values that have the name of the accumulator they are the next of.
     next: FxHashMap<Value, String>,
     /// Products that are derivatives of others.
-    pub slopes: Slopes,
+    slopes: Vec<Slope>,
     /// What is read of hashes, once one is met.
     draws: OnceCell<Draws>,
 }
 
 impl<'g> Frame<'g> {
     pub fn new(function: &'g Function, regions: Regions) -> Frame<'g> {
-        Frame::with_slopes(function, regions, Slopes::default())
-    }
-
-    /// The frame of a function some of whose products are slopes of others.
-    pub fn with_slopes(function: &'g Function, regions: Regions, slopes: Slopes) -> Frame<'g> {
         let draws = OnceCell::new();
         Frame {
             function,
-            uses: uses(function, &regions, &slopes, &draws),
-            slopes,
+            uses: uses(function, &regions, &draws),
+            slopes: Vec::new(),
             regions: Rc::new(regions),
             values: vec![None; function.values.len()],
             nest: vec![0; function.values.len()],
@@ -79,6 +74,23 @@ impl<'g> Frame<'g> {
             }
         }
         frame
+    }
+
+    /// Finds the products that are slopes of others; `per_draw` marks what is the same for a whole draw.
+    pub fn find_slopes(&mut self, per_draw: &[bool]) {
+        self.slopes = slopes(self.function, &self.regions, per_draw, &self.uses);
+        for Slope { value, product, factors: [derivative, scale], .. } in self.slopes.clone() {
+            let Operation::Builtin(_, factors) = self.function.operation(value) else { continue };
+            let scale = written_factor(self.function, factors, scale);
+            self.uses[product.0 as usize] += 1;
+            self.uses[scale.0 as usize] -= 1;
+            self.uses[derivative.0 as usize] = 0;
+        }
+    }
+
+    /// What a product is the slope of.
+    pub fn slope(&self, value: Value) -> Option<Slope> {
+        self.slopes.iter().find(|slope| slope.value == value).copied()
     }
 
     /// Says what the function's inputs are, in order.
@@ -136,7 +148,7 @@ impl<'g> Frame<'g> {
         operation.for_operands(|v| nest = nest.max(self.nest[v.0 as usize]));
         let nest = nest.saturating_add(1);
         let shared = !is_cheap(operation) && self.uses[value.0 as usize] > 1;
-        let is_eager = is_eager(operation) || self.slopes.contains_key(&value);
+        let is_eager = is_eager(operation) || self.slope(value).is_some();
         if self.author(value).is_some() || is_eager || nest >= MAX_NEST || shared {
             return true;
         }
@@ -187,7 +199,7 @@ impl<'g> Frame<'g> {
     /// What a value is called, if it has to have a name.
     pub fn name(&self, value: Value) -> &str {
         let next = || self.next.get(&value).map(String::as_str);
-        let hint = || match self.slopes.contains_key(&value) {
+        let hint = || match self.slope(value).is_some() {
             true => SLOPE,
             false => hint(self.function.operation(value)),
         };
@@ -259,7 +271,7 @@ fn hint(operation: &Operation) -> &'static str {
 
 /// How often each value is written. What is a scalar in every component is written as that scalar,
 /// once; a branch writes its condition once; a loop counts as many times.
-fn uses(function: &Function, regions: &Regions, slopes: &Slopes, draws: &OnceCell<Draws>) -> Vec<u32> {
+fn uses(function: &Function, regions: &Regions, draws: &OnceCell<Draws>) -> Vec<u32> {
     let mut uses = vec![0; function.values.len()];
     for (_, value) in &function.outputs {
         uses[value.0 as usize] += 1;
@@ -272,10 +284,6 @@ fn uses(function: &Function, regions: &Regions, slopes: &Slopes, draws: &OnceCel
         let mut add = |v: Value, times: u32| uses[v.0 as usize] += times;
         match operation {
             Operation::Builtin(MULTIPLY | MULTIPLY_INT, factors) => {
-                if let Some((product, _)) = slopes.get(&value) {
-                    add(*product, 1);
-                    continue;
-                }
                 factors.iter().for_each(|v| add(written_factor(function, factors, *v), 1));
             }
             Operation::Select(condition, yes, no) => {

@@ -2,7 +2,6 @@
 
 use super::body::Body;
 use super::frame::{Argument, Frame, has_sampler};
-use super::slope::{Slopes, slopes};
 use super::types::Types;
 use super::{Callee, Lowering, Member};
 use crate::contract::Reads;
@@ -37,9 +36,10 @@ impl<'a> Lowering<'a> {
         let mut body = Body::new(&mut function, scope);
         let first = if is_entry { draw_rate(source, &self.weights) } else { Vec::new() };
         let regions = Regions::inside(source, &self.weights, 0, &first);
-        let takes_slopes = is_entry && self.manifest.gradients.is_empty();
-        let slopes = if takes_slopes { slopes(source, &regions, &first) } else { Slopes::default() };
-        let mut frame = Frame::with_slopes(source, regions, slopes);
+        let mut frame = Frame::new(source, regions);
+        if is_entry && self.manifest.gradients.is_empty() {
+            frame.find_slopes(&first);
+        }
         let inputs = self.bind_arguments(&mut body, source, &reads, is_entry);
         frame.bind(&inputs);
         self.numbers(&mut body, &mut frame);

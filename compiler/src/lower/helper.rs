@@ -97,6 +97,8 @@ struct Chain {
 /// A function being looked through.
 #[derive(Default)]
 struct Looking {
+    /// Which values are hashes or stand in a chain; most are neither.
+    marked: Vec<bool>,
     draws: Draws,
     /// By the number.
     chains: FxHashMap<Value, Chain>,
@@ -107,7 +109,8 @@ struct Looking {
 impl Draws {
     /// Looks through a function once.
     pub fn of(function: &Function) -> Draws {
-        let mut looking = Looking::default();
+        let marked = vec![false; function.values.len()];
+        let mut looking = Looking { marked, ..Looking::default() };
         for (value, operation) in function.iter() {
             looking.operation(function, value, operation);
         }
@@ -131,23 +134,25 @@ impl Draws {
 impl Looking {
     fn operation(&mut self, function: &Function, value: Value, operation: &Operation) {
         match operation {
-            Operation::Extract(of, i) if self.draws.hashes.contains_key(of) => {
+            Operation::Extract(of, i) if self.is_marked(*of) => {
                 self.extract(*of, *i, value);
                 return;
             }
-            Operation::Builtin(MULTIPLY, of) => {
+            Operation::Builtin(MULTIPLY, of) if self.is_marked(of[0]) => {
                 let bits = power_of_two(function, of[1]);
                 if let (Some(bits), Some(chain)) = (bits, self.chains.get_mut(&of[0])) {
                     chain.product = Some((value, bits));
                     self.products.insert(value, of[0]);
+                    self.marked[value.0 as usize] = true;
                 }
             }
-            Operation::Builtin(TO_INT, of) => {
+            Operation::Builtin(TO_INT, of) if self.is_marked(of[0]) => {
                 let chain = self.products.get(&of[0]).and_then(|first| self.chains.get_mut(first));
                 chain.into_iter().for_each(|chain| chain.pick = Some(value));
             }
             _ if is_hash(operation) => {
                 self.draws.hashes.insert(value, Drawn { numbers: 1, first: None });
+                self.marked[value.0 as usize] = true;
             }
             _ => {}
         }
@@ -160,12 +165,20 @@ impl Looking {
                 drawn.numbers = 4;
             } else {
                 drawn.first = Some(value);
+                self.marked[value.0 as usize] = true;
                 self.chains.insert(value, Chain { hash, product: None, pick: None, reads: 0 });
             }
         }
     }
 
+    fn is_marked(&self, value: Value) -> bool {
+        self.marked[value.0 as usize]
+    }
+
     fn read(&mut self, value: Value) {
+        if !self.is_marked(value) {
+            return;
+        }
         if let Some(drawn) = self.draws.hashes.get_mut(&value) {
             drawn.numbers = 4;
         }

@@ -223,8 +223,8 @@ impl Lowering<'_> {
         intrinsic: Intrinsic,
         arguments: &[Value],
     ) -> Handle<Expression> {
-        if let Some((product, axis)) = frame.slopes.get(&value) {
-            return derivative(body, frame.get(*product), *axis);
+        if let Some(slope) = frame.slope(value) {
+            return derivative(body, frame.get(slope.product), slope.axis);
         }
         if let [a, b] = arguments
             && matches!(intrinsic, MULTIPLY | MULTIPLY_INT)

@@ -5,82 +5,60 @@
 use crate::graph::regions::Regions;
 use crate::graph::{Axis, Function, Operation, Value};
 use crate::intrinsic::MULTIPLY;
-use rustc_hash::FxHashMap;
 
-/// For each product of a slope the product whose slope it is.
-pub type Slopes = FxHashMap<Value, (Value, Axis)>;
-
-/// A function being looked through.
-struct Looking<'a> {
-    function: &'a Function,
-    regions: &'a Regions,
-    /// Which values are the same for a whole draw.
-    per_draw: &'a [bool],
-    /// Derivatives, and how often each is read.
-    derivatives: FxHashMap<Value, (Value, Axis, u32)>,
-    /// Products of what has derivatives, by the factors.
-    products: FxHashMap<(Value, Value), Value>,
-    slopes: Slopes,
+/// A product that is the slope of another.
+#[derive(Clone, Copy)]
+pub struct Slope {
+    /// The product of a derivative.
+    pub value: Value,
+    /// The product whose derivative it is.
+    pub product: Value,
+    /// Along which axis.
+    pub axis: Axis,
+    /// The derivative that is not needed, and the number that it is scaled by.
+    pub factors: [Value; 2],
 }
 
-/// Those of an entry. Both products stand at the top, where derivatives may be taken.
-pub fn slopes(function: &Function, regions: &Regions, per_draw: &[bool]) -> Slopes {
+/// The slopes of an entry; few, as each has a derivative of its own. Both products stand at the top,
+/// where derivatives may be taken. `per_draw` marks what is the same for a whole draw, `uses` tells how
+/// often values are written.
+pub fn slopes(function: &Function, regions: &Regions, per_draw: &[bool], uses: &[u32]) -> Vec<Slope> {
     let derivatives = function.iter().filter_map(|(value, operation)| match operation {
+<<<<<<< HEAD
 <<<<<<< HEAD
         Operation::Derivative(of, axis, _) => Some((value, (*of, *axis, true))),
 =======
         Operation::Derivative(of, axis, _) => Some((value, (*of, *axis, 0))),
 >>>>>>> 652e2c5 (One hash of four numbers serves all; slopes of products only where they save something; snapshots)
+=======
+        Operation::Derivative(of, axis, _) if uses[value.0 as usize] == 1 => Some((value, *of, *axis)),
+>>>>>>> 09ff17e (Slopes and draws are looked for only where there are some)
         _ => None,
     });
-    let derivatives: FxHashMap<_, _> = derivatives.collect();
-    if derivatives.is_empty() {
-        return Slopes::default();
-    }
-    let (products, slopes) = Default::default();
-    let mut looking = Looking { function, regions, per_draw, derivatives, products, slopes };
-    function.iter().for_each(|(value, operation)| looking.operation(value, operation));
-    function.outputs.iter().for_each(|(_, value)| looking.read(*value));
-    let Looking { derivatives, mut slopes, .. } = looking;
-    slopes.retain(|value, _| match function.operation(*value) {
-        Operation::Builtin(_, factors) => {
-            factors.iter().all(|v| derivatives.get(v).is_none_or(|(_, _, reads)| *reads == 1))
-        }
-        _ => false,
-    });
-    slopes
+    let is_per_draw = |value: Value| {
+        per_draw.get(value.0 as usize) == Some(&true)
+            || matches!(function.operation(value), Operation::Constant(_))
+    };
+    let slope = |(derivative, of, axis)| {
+        let (value, scale) = products(function).find_map(|(value, factors)| match factors {
+            [a, b] if a == derivative => Some((value, b)),
+            [a, b] if b == derivative => Some((value, a)),
+            _ => None,
+        })?;
+        let (product, _) =
+            products(function).find(|(_, factors)| [[of, scale], [scale, of]].contains(factors))?;
+        let is_written = uses[product.0 as usize] > 0 && uses[value.0 as usize] > 0;
+        let are_at_top = regions.is_at_top(value) && regions.is_at_top(product);
+        let fits = is_written && are_at_top && product < value && is_per_draw(scale);
+        fits.then_some(Slope { value, product, axis, factors: [derivative, scale] })
+    };
+    derivatives.filter_map(slope).collect()
 }
 
-impl Looking<'_> {
-    fn operation(&mut self, value: Value, operation: &Operation) {
-        if let Operation::Builtin(MULTIPLY, factors) = operation
-            && self.regions.is_at_top(value)
-        {
-            let [a, b] = [factors[0], factors[1]];
-            for (factor, scale) in [(a, b), (b, a)] {
-                if !self.is_per_draw(scale) {
-                    continue;
-                }
-                if let Some((of, axis, _)) = self.derivatives.get(&factor) {
-                    if let Some(product) = self.products.get(&(*of, scale)) {
-                        self.slopes.insert(value, (*product, *axis));
-                    }
-                } else {
-                    self.products.insert((factor, scale), value);
-                }
-            }
-        }
-        operation.for_operands(|v| self.read(v));
-    }
-
-    fn is_per_draw(&self, value: Value) -> bool {
-        self.per_draw.get(value.0 as usize) == Some(&true)
-            || matches!(self.function.operation(value), Operation::Constant(_))
-    }
-
-    fn read(&mut self, value: Value) {
-        if let Some((_, _, reads)) = self.derivatives.get_mut(&value) {
-            *reads += 1;
-        }
-    }
+/// Products of floats with their factors.
+fn products(function: &Function) -> impl Iterator<Item = (Value, [Value; 2])> {
+    function.iter().filter_map(|(value, operation)| match operation {
+        Operation::Builtin(MULTIPLY, factors) => Some((value, [factors[0], factors[1]])),
+        _ => None,
+    })
 }
