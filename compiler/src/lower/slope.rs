@@ -24,15 +24,7 @@ pub struct Slope {
 /// often values are written.
 pub fn slopes(function: &Function, regions: &Regions, per_draw: &[bool], uses: &[u32]) -> Vec<Slope> {
     let derivatives = function.iter().filter_map(|(value, operation)| match operation {
-<<<<<<< HEAD
-<<<<<<< HEAD
-        Operation::Derivative(of, axis, _) => Some((value, (*of, *axis, true))),
-=======
-        Operation::Derivative(of, axis, _) => Some((value, (*of, *axis, 0))),
->>>>>>> 652e2c5 (One hash of four numbers serves all; slopes of products only where they save something; snapshots)
-=======
         Operation::Derivative(of, axis, _) if uses[value.0 as usize] == 1 => Some((value, *of, *axis)),
->>>>>>> 09ff17e (Slopes and draws are looked for only where there are some)
         _ => None,
     });
     let is_per_draw = |value: Value| {
