@@ -46,6 +46,7 @@ const LISTED: &[&str] = &[
     "examples/terrain.tex:terrain::ground, color",
     "tests/golden/bakes.tex:bakes::flat, color",
     "tests/golden/bakes.tex:bakes::ground, color",
+    "tests/golden/sampled.tex:sampled::ground, color",
     "tests/golden/tiling_far.tex:tiling_far::ground, color",
 ];
 
