@@ -13,10 +13,6 @@ const MOST_NESTED: u32 = 24;
 /// it again and again.
 const MOST_TAKEN_OVER: u64 = 200_000;
 
-/// Values of a function of the library that only one place of a program calls, at most, for it to be
-/// taken over: what is so short reads better in its place.
-const MOST_OF_ONCE: usize = 12;
-
 /// What becomes of a function.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
@@ -40,8 +36,6 @@ pub struct Plan {
 #[derive(Clone, Copy, Default)]
 struct Need {
     called: bool,
-    /// Called by a function of the library, which would no longer be the library's own.
-    by_library: bool,
     /// The body or the condition of a fold: it stands in the function that the fold stands in.
     folded: bool,
     /// Loops around it there.
@@ -64,9 +58,7 @@ impl Plan {
                 continue;
             }
             let cost = need.copies.saturating_mul(function.values.len() as u64);
-            let over = (function.inline || is_short(function) && need.copies == 1 && !need.by_library)
-                && !need.folded
-                && i != entry;
+            let over = function.inline && !need.folded && i != entry;
             let over = over && need.loops + nests[i] <= MOST_NESTED && cost <= allowance;
             fates[i] = match (over, need.folded) {
                 (true, _) => Fate::TakenOver,
@@ -94,12 +86,6 @@ impl Plan {
     }
 }
 
-/// A few operations of the library, and no more.
-fn is_short(function: &Function) -> bool {
-    let is_plain = |operation: &Operation| !matches!(operation, Operation::Call(..) | Operation::Fold(_));
-    function.origin.is_some() && function.values.len() <= MOST_OF_ONCE && function.values.iter().all(is_plain)
-}
-
 /// Notes what a function needs.
 fn spread(function: &Function, loops: u32, copies: u64, needs: &mut [Need]) {
     for operation in &function.values {
@@ -107,7 +93,6 @@ fn spread(function: &Function, loops: u32, copies: u64, needs: &mut [Need]) {
             Operation::Call(callee, _) => {
                 let need = &mut needs[callee.0 as usize];
                 need.called = true;
-                need.by_library |= function.origin.is_some();
                 need.loops = need.loops.max(loops);
                 need.copies = need.copies.saturating_add(copies);
             }
