@@ -1,9 +1,10 @@
 //! Derivatives of scaled inputs: the slope of a place times a number that is the same for a whole draw
 //! is the slope of the product, which is there anyway. Where nothing else reads the place's own slope,
-//! the multiplication is saved, as it is when one writes it by hand.
+//! the multiplication is saved, as it is when one writes it by hand. Only for the gradients of samples,
+//! whose levels do not see how the last bit was rounded.
 
 use crate::graph::regions::Regions;
-use crate::graph::{Axis, Function, Operation, Value};
+use crate::graph::{Axis, Function, Level, Operation, Value};
 use crate::intrinsic::MULTIPLY;
 
 /// A product that is the slope of another.
@@ -42,9 +43,20 @@ pub fn slopes(function: &Function, regions: &Regions, per_draw: &[bool], uses: &
         let is_written = uses[product.0 as usize] > 0 && uses[value.0 as usize] > 0;
         let are_at_top = regions.is_at_top(value) && regions.is_at_top(product);
         let fits = is_written && are_at_top && product < value && is_per_draw(scale);
+        let fits = fits && is_gradient(function, value);
         fits.then_some(Slope { value, product, axis, factors: [derivative, scale] })
     };
     derivatives.filter_map(slope).collect()
+}
+
+/// Whether nothing but samples reads a value, as their gradient.
+fn is_gradient(function: &Function, value: Value) -> bool {
+    let is_fine = |operation: &Operation| {
+        let mut is_read = false;
+        operation.for_operands(|v| is_read |= v == value);
+        !is_read || matches!(operation, Operation::Sample { level: Level::Gradient(..), .. })
+    };
+    function.values.iter().all(is_fine) && function.outputs.iter().all(|(_, output)| *output != value)
 }
 
 /// Products of floats with their factors.
