@@ -1,34 +1,24 @@
-//! The plane in perspective: what a camera sees of `uv`, and textures on it on CPU and GPU.
-//!
-//! GPU tests are shown as ignored where there is no adapter; `TEXGRAPH_GPU=required` makes that a
-//! failure. `TEXGRAPH_WGSL=FOLDER` writes every example's shader on the ground to `FOLDER/plane`, for
+//! The plane in perspective: what a camera sees of `uv`. That the GPU sees the same is for
+//! `agreement`. `TEXGRAPH_WGSL=FOLDER` writes every example's shader on the ground to `FOLDER/plane`, for
 //! `tests/tint`.
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::Arc;
 use texgraph_compiler::plane::{HORIZON, SKY};
 use texgraph_compiler::{Library, Options, Plane, Program, compile, diagnostic::render};
 use texgraph_runtime::cpu;
-use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::picture::Picture;
 use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
 
-/// A channel may differ by this much between CPU and GPU, as it is written.
-const TOLERANCE: u8 = 2;
-/// The share of pixels that must agree.
-const AGREE: f64 = 0.999;
 /// Units of `uv` along the lower edge.
 const REPEAT: f32 = 3.0;
 
 fn main() {
     let arguments = Arguments::from_args();
-    let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
-    let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
-    let mut trials = vec![
+    let trials = vec![
         Trial::test("the_lower_edge_shows_so_many_units", the_lower_edge_shows_so_many_units),
         Trial::test("what_is_above_the_horizon_is_sky", what_is_above_the_horizon_is_sky),
         Trial::test("the_view_goes_to_the_eye", the_view_goes_to_the_eye),
@@ -37,12 +27,6 @@ fn main() {
         Trial::test("every_example_lies_on_the_ground", every_example_lies_on_the_ground),
         Trial::test("wires_lie_on_the_ground_too", wires_lie_on_the_ground_too),
     ];
-    for file in ["examples/tiling.tex", "tests/golden/branches.tex", "examples/mixed.tex"] {
-        let gpu = gpu.clone();
-        let ignored = gpu.is_err() && !required;
-        let run = move || cpu_and_gpu_agree(&*gpu.map_err(|error| error.to_string())?, file);
-        trials.push(Trial::test(format!("cpu_and_gpu_agree::{file}"), run).with_ignored_flag(ignored));
-    }
     libtest_mimic::run(&arguments, trials).exit();
 }
 
@@ -205,35 +189,4 @@ fn wires_lie_on_the_ground_too() -> Result<(), Failed> {
     assert!(near(corner[0], 2.0 * REPEAT, 0.1) && near(corner[1], 2.0 * REPEAT, 0.1), "{corner:?}");
     assert_eq!(pixel(&place, 0, 0)[..2], [0.0, 0.0]);
     Ok(())
-}
-
-fn cpu_and_gpu_agree(gpu: &Gpu, file: &str) -> Result<(), Failed> {
-    let size = [331, 251];
-    // All that varies in these is sampled with its gradient, or smooth: far away rounding decides the rest.
-    for repeat in [0.17, 1.03, 4.71] {
-        let (program, tables) = loaded(file, plane(size, repeat))?;
-        for output in 0..program.manifest.outputs.len() {
-            let request = Request { time: 1.25, output, ..Request::new(size) };
-            let mut scene = gpu.prepare(&program, &tables, output).map_err(|error| error.to_string())?;
-            let theirs = scene.render(&request, &|_| {}).map_err(|error| error.to_string())?;
-            let ours = on_cpu(&program, &tables, &request)?;
-            let [ours, theirs] = [written(&ours)?, written(&theirs)?];
-            let agree = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| {
-                a.0.iter().zip(b.0).all(|(a, b)| a.abs_diff(b) <= TOLERANCE)
-            };
-            let agreeing = ours.pixels().zip(theirs.pixels()).filter(|pair| agree(*pair)).count();
-            let share = agreeing as f64 / f64::from(size[0] * size[1]);
-            println!("{file}, output {output}, {repeat} units: {share:.5} agree");
-            if share < AGREE {
-                return Err(format!("output {output} at {repeat} units: {share:.5} agree").into());
-            }
-        }
-    }
-    Ok(())
-}
-
-/// A picture through its file.
-fn written(picture: &Picture) -> Result<image::RgbaImage, Failed> {
-    let png = picture.to_png().map_err(|error| error.to_string())?;
-    Ok(image::load_from_memory(&png).map_err(|error| error.to_string())?.to_rgba8())
 }

@@ -37,10 +37,23 @@ impl Reported {
     }
 }
 
+/// Statements of a library node that gives several values, at most, for it to be taken over: a call
+/// would take a struct and as many lines.
+const MOST_STATEMENTS: usize = 3;
+
 impl<'a> Checker<'a> {
+    /// Whether callers take a node over instead of calling it.
+    fn is_taken_over(&self, module: usize, node: &Node) -> bool {
+        let is_library = module < self.library.modules().len();
+        match (node.body.statements.len(), node.outputs.len()) {
+            (1, 1) => true,
+            (statements, outputs) => is_library && outputs > 1 && statements <= MOST_STATEMENTS,
+        }
+    }
+
     /// The steps of a node.
     pub(super) fn plan_node(&mut self, f: &mut Frame<'a>, node: &'a Node) {
-        f.builder.set_inline(node.body.statements.len() == 1 && node.outputs.len() == 1);
+        f.builder.set_inline(self.is_taken_over(f.module, node));
         let inputs = node.inputs.iter().map(|input| &input.name);
         let head: Vec<&'a Name> = inputs.chain(node.outputs.iter().map(|output| &output.name)).collect();
         self.distinct(f, &head);

@@ -6,11 +6,11 @@
 
 use super::{Checker, Frame, types};
 use crate::diagnostic::{Place, folds, limits, types as errors};
+use crate::graph::bounds::Bounds;
 use crate::graph::{Builder, Constant, Operation, Scalar, Value};
 use crate::intrinsic::{
-    ABSOLUTE_INT, ADD_INT, BITS, CHOOSE_INT, CLAMP_INT, COMPONENT_LESS_INT, DIVIDE_INT, EQUAL_INT,
-    GREATER_INT, Intrinsic, MAXIMUM_INT, MINIMUM_INT, MULTIPLY_INT, NEGATE_INT, RAW_DIVIDE_INT,
-    REMAINDER_INT, SUBTRACT_INT,
+    ADD_INT, CHOOSE_INT, COMPONENT_LESS_INT, DIVIDE_INT, EQUAL_INT, GREATER_INT, MAXIMUM_INT, MINIMUM_INT,
+    MULTIPLY_INT, RAW_DIVIDE_INT, REMAINDER_INT, SUBTRACT_INT,
 };
 use texgraph_grammar::syntax::{Expr, Fold};
 
@@ -25,16 +25,6 @@ pub struct Steps {
     /// The most steps.
     pub most: u32,
 }
-
-/// The numbers that an int may be.
-#[derive(Clone, Copy, PartialEq)]
-struct Bounds {
-    low: i64,
-    high: i64,
-}
-
-/// Any int.
-const ANY: Bounds = Bounds { low: i32::MIN as i64, high: i32::MAX as i64 };
 
 /// How deep bounds are looked for.
 const MAX_DEPTH: u32 = 64;
@@ -127,7 +117,7 @@ impl<'a> Checker<'a> {
         let b = &mut f.builder;
         let (zero, one) = (int(b, 0), int(b, i32::from(inclusive)));
         let span = b.builtin(SUBTRACT_INT, &[end, low]);
-        let bounded = from != ANY && to != ANY || longest <= i64::from(limits::MAX_STEPS);
+        let bounded = from != Bounds::ANY && to != Bounds::ANY || longest <= i64::from(limits::MAX_STEPS);
         if fits {
             let length = b.builtin(ADD_INT, &[span, one]);
             let never_short = to.low - from.high + i64::from(inclusive) >= 0;
@@ -149,85 +139,30 @@ impl<'a> Checker<'a> {
         let builder = f.builder_of(level);
         let component = usize::from(i.min(builder.ty(value).width().saturating_sub(1)));
         if depth > MAX_DEPTH {
-            return ANY;
+            return Bounds::ANY;
         }
-        let of = |value: Value| self.bounds(f, level, value, i, depth + 1);
-        let found = match builder.operation(value) {
-            Operation::Constant(c) if c.scalar() == Scalar::Int => Bounds::exactly(c.int(component)),
+        match builder.operation(value) {
             Operation::Param(id) => match self.params.get(id.0 as usize).and_then(|param| param.range) {
                 Some((low, high)) if low.scalar() == Scalar::Int => {
-                    Bounds { low: low.int(component).into(), high: high.int(component).into() }
+                    Bounds { low: low.int(component).into(), high: high.int(component).into() }.without_wrap()
                 }
-                _ => ANY,
+                _ => Bounds::ANY,
             },
             Operation::Input(n) => {
                 let own = builder.function().inputs.len();
                 let Some(layer) = level.checked_sub(1).and_then(|outer| f.layers.get(outer)) else {
-                    return ANY;
+                    return Bounds::ANY;
                 };
                 let first = own - layer.captures.len().min(own);
                 match (*n as usize).checked_sub(first).and_then(|n| layer.captures.get(n)) {
                     Some(outer) => self.bounds(f, level - 1, *outer, i, depth + 1),
-                    None => ANY,
+                    None => Bounds::ANY,
                 }
             }
-            Operation::Compose(parts) => {
-                parts.get(component).map_or(ANY, |v| self.bounds(f, level, *v, 0, depth + 1))
+            operation => {
+                Bounds::of(operation, component as u8, |v, i| self.bounds(f, level, v, i, depth + 1))
             }
-            Operation::Extract(v, k) => self.bounds(f, level, *v, *k, depth + 1),
-            Operation::Select(_, yes, no) => of(*yes).either(of(*no)),
-            Operation::Builtin(intrinsic, arguments) => {
-                let arguments: Vec<Bounds> = arguments.iter().map(|v| of(*v)).collect();
-                arithmetic(*intrinsic, &arguments)
-            }
-            _ => ANY,
-        };
-        found.without_wrap()
-    }
-}
-
-impl Bounds {
-    fn exactly(n: i32) -> Bounds {
-        Bounds { low: n.into(), high: n.into() }
-    }
-
-    fn either(self, other: Bounds) -> Bounds {
-        Bounds { low: self.low.min(other.low), high: self.high.max(other.high) }
-    }
-
-    /// What leaves the ints wraps, so it may be any.
-    fn without_wrap(self) -> Bounds {
-        if self.low >= ANY.low && self.high <= ANY.high && self.low <= self.high { self } else { ANY }
-    }
-}
-
-fn arithmetic(intrinsic: Intrinsic, v: &[Bounds]) -> Bounds {
-    match (intrinsic, v) {
-        (ADD_INT, [a, b]) => Bounds { low: a.low + b.low, high: a.high + b.high },
-        (SUBTRACT_INT, [a, b]) => Bounds { low: a.low - b.high, high: a.high - b.low },
-        (NEGATE_INT, [a]) => Bounds { low: -a.high, high: -a.low },
-        (MULTIPLY_INT, [a, b]) => {
-            let products = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
-            let low = products.iter().min().copied().unwrap_or(ANY.low);
-            Bounds { low, high: products.iter().max().copied().unwrap_or(ANY.high) }
         }
-        (MINIMUM_INT, [a, b]) => Bounds { low: a.low.min(b.low), high: a.high.min(b.high) },
-        (MAXIMUM_INT, [a, b]) => Bounds { low: a.low.max(b.low), high: a.high.max(b.high) },
-        (CLAMP_INT, [x, low, high]) => {
-            Bounds { low: x.low.max(low.low).min(high.low), high: x.high.max(low.high).min(high.high) }
-        }
-        (ABSOLUTE_INT, [a]) if a.low > ANY.low => {
-            Bounds { low: a.low.max(-a.high).max(0), high: a.high.max(-a.low) }
-        }
-        (REMAINDER_INT, [_, b]) if b.low > 0 => Bounds { low: 0, high: b.high - 1 },
-        (DIVIDE_INT, [a, b]) if b.low > 0 => Bounds {
-            low: a.low.div_euclid(if a.low < 0 { b.low } else { b.high }),
-            high: a.high.div_euclid(if a.high < 0 { b.high } else { b.low }),
-        },
-        (BITS, [_, _, count]) if (0..31).contains(&count.high) => {
-            Bounds { low: 0, high: (1 << count.high) - 1 }
-        }
-        _ => ANY,
     }
 }
 

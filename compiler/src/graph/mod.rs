@@ -5,6 +5,7 @@
 //! functions of the same [`Graph`]. Walking both arenas in order therefore meets everything after
 //! what it needs, and no pass recurses.
 
+pub mod bounds;
 mod builder;
 mod constant;
 mod dump;

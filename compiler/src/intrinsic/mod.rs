@@ -112,11 +112,6 @@ pub enum Helper {
     Hash,
 }
 
-impl Helper {
-    /// Each of them.
-    pub const ALL: [Helper; 1] = [Helper::Hash];
-}
-
 impl Intrinsic {
     /// Every row, in order.
     pub fn all() -> impl Iterator<Item = Intrinsic> {

@@ -2,13 +2,19 @@
 
 use super::body::Variable;
 use super::fold::takes_all_steps;
+use super::helper::{self, Drawn, Draws, Pick};
+use super::slope::{Slope, slopes};
 use super::table::MAX_CHOSEN;
 use crate::graph::regions::Regions;
 use crate::graph::{Constant, Function, Operation, Type, Value};
-use crate::intrinsic::{Form, MULTIPLY, MULTIPLY_INT};
+use crate::intrinsic::{Form, MULTIPLY, MULTIPLY_INT, TO_FLOAT};
 use naga::{Expression, Handle};
 use rustc_hash::FxHashMap;
+use std::cell::OnceCell;
 use std::rc::Rc;
+
+/// What a derivative without a name of its own is called.
+const SLOPE: &str = "slope";
 
 /// Unnamed operations inside each other at most.
 const MAX_NEST: u8 = 16;
@@ -33,13 +39,19 @@ pub struct Frame<'g> {
     known: FxHashMap<Value, Constant>,
     /// Of a fold's step: values that have the name of the accumulator they are the next of.
     next: FxHashMap<Value, String>,
+    /// Products that are derivatives of others.
+    slopes: Vec<Slope>,
+    /// What is read of hashes, once one is met.
+    draws: OnceCell<Draws>,
 }
 
 impl<'g> Frame<'g> {
     pub fn new(function: &'g Function, regions: Regions) -> Frame<'g> {
+        let draws = OnceCell::new();
         Frame {
             function,
-            uses: uses(function, &regions),
+            uses: uses(function, &regions, &draws),
+            slopes: Vec::new(),
             regions: Rc::new(regions),
             values: vec![None; function.values.len()],
             nest: vec![0; function.values.len()],
@@ -48,6 +60,7 @@ impl<'g> Frame<'g> {
             results: results(function),
             known: FxHashMap::default(),
             next: FxHashMap::default(),
+            draws,
         }
     }
 
@@ -61,6 +74,23 @@ impl<'g> Frame<'g> {
             }
         }
         frame
+    }
+
+    /// Finds the products that are slopes of others; `per_draw` marks what is the same for a whole draw.
+    pub fn find_slopes(&mut self, per_draw: &[bool]) {
+        self.slopes = slopes(self.function, &self.regions, per_draw, &self.uses);
+        for Slope { value, product, factors: [derivative, scale], .. } in self.slopes.clone() {
+            let Operation::Builtin(_, factors) = self.function.operation(value) else { continue };
+            let scale = written_factor(self.function, factors, scale);
+            self.uses[product.0 as usize] += 1;
+            self.uses[scale.0 as usize] -= 1;
+            self.uses[derivative.0 as usize] = 0;
+        }
+    }
+
+    /// What a product is the slope of.
+    pub fn slope(&self, value: Value) -> Option<Slope> {
+        self.slopes.iter().find(|slope| slope.value == value).copied()
     }
 
     /// Says what the function's inputs are, in order.
@@ -118,7 +148,8 @@ impl<'g> Frame<'g> {
         operation.for_operands(|v| nest = nest.max(self.nest[v.0 as usize]));
         let nest = nest.saturating_add(1);
         let shared = !is_cheap(operation) && self.uses[value.0 as usize] > 1;
-        if self.author(value).is_some() || is_eager(operation) || nest >= MAX_NEST || shared {
+        let is_eager = is_eager(operation) || self.slope(value).is_some();
+        if self.author(value).is_some() || is_eager || nest >= MAX_NEST || shared {
             return true;
         }
         self.nest[value.0 as usize] = nest;
@@ -141,10 +172,38 @@ impl<'g> Frame<'g> {
         self.results.get(&call).copied()
     }
 
+    /// What is read of a hash; none for any other value.
+    pub fn drawn(&self, value: Value) -> Option<Drawn> {
+        if !helper::is_hash(self.function.operation(value)) {
+            return None;
+        }
+        self.draws.get_or_init(|| Draws::of(self.function)).hashes.get(&value).copied()
+    }
+
+    /// What a value is on the way to a pick.
+    pub fn pick(&self, value: Value) -> Option<Pick> {
+        self.draws.get()?.picks.get(&value).copied()
+    }
+
+    /// What the author calls a hash, or its only number.
+    pub fn author_of_hash(&self, hash: Value) -> Option<&'g str> {
+        let only = || self.drawn(hash).filter(|drawn| drawn.numbers <= 1)?.first;
+        self.author(hash).or_else(|| self.author(only()?))
+    }
+
+    /// The components of a lowered value; of a hash, those that are read.
+    pub fn width(&self, value: Value) -> u8 {
+        self.drawn(value).map_or(self.function.ty(value).width(), |drawn| drawn.numbers.max(1))
+    }
+
     /// What a value is called, if it has to have a name.
     pub fn name(&self, value: Value) -> &str {
         let next = || self.next.get(&value).map(String::as_str);
-        self.author(value).or_else(next).unwrap_or_else(|| hint(self.function.operation(value)))
+        let hint = || match self.slope(value).is_some() {
+            true => SLOPE,
+            false => hint(self.function.operation(value)),
+        };
+        self.author(value).or_else(next).unwrap_or_else(hint)
     }
 
     /// Known, or held by a name or variable of its own.
@@ -156,6 +215,8 @@ impl<'g> Frame<'g> {
             | Operation::Input(_)
             | Operation::Call(..)
             | Operation::Fold(_) => true,
+            // A hash that gives one number.
+            Operation::Extract(of, _) => self.values[of.0 as usize] == Some(handle),
             // A call's only output is the call's result.
             Operation::Output(of, _) => {
                 matches!(self.function.operation(*of), Operation::Fold(_)) || self.get(*of) == handle
@@ -203,14 +264,14 @@ fn hint(operation: &Operation) -> &'static str {
         Operation::Select(..) => "chosen",
         Operation::Compose(_) => "vector",
         Operation::Lookup(..) => "entry",
-        Operation::Derivative(..) => "slope",
+        Operation::Derivative(..) => SLOPE,
         _ => "t",
     }
 }
 
 /// How often each value is written. What is a scalar in every component is written as that scalar,
 /// once; a branch writes its condition once; a loop counts as many times.
-fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
+fn uses(function: &Function, regions: &Regions, draws: &OnceCell<Draws>) -> Vec<u32> {
     let mut uses = vec![0; function.values.len()];
     for (_, value) in &function.outputs {
         uses[value.0 as usize] += 1;
@@ -236,8 +297,19 @@ fn uses(function: &Function, regions: &Regions) -> Vec<u32> {
                 add(fold.steps, if takes_all_steps(function, fold) { 2 } else { 1 });
             }
             Operation::Compose(parts) if parts.iter().all(|part| *part == parts[0]) => add(parts[0], 1),
+            Operation::Builtin(TO_FLOAT, of) => match splat_of(function, of[0]) {
+                Some(Splat::Value(scalar)) => add(scalar, 1),
+                _ => add(of[0], 1),
+            },
             Operation::Lookup(table, index) => {
                 add(*index, if table.len() <= MAX_CHOSEN { table.len() as u32 - 1 } else { 1 });
+            }
+            Operation::Builtin(_, arguments) if helper::is_hash(operation) => {
+                let drawn = draws.get_or_init(|| Draws::of(function)).hashes.get(&value);
+                match drawn.and_then(|drawn| helper::words(function, arguments[0], *drawn)) {
+                    Some(words) => words.iter().for_each(|v| add(*v, 1)),
+                    None => add(arguments[0], 1),
+                }
             }
             Operation::Extract(vector, _) if !function.names.contains(value) => add(*vector, own),
             _ => operation.for_operands(|v| add(v, 1)),

@@ -35,7 +35,11 @@ impl<'a> Lowering<'a> {
         };
         let mut body = Body::new(&mut function, scope);
         let first = if is_entry { draw_rate(source, &self.weights) } else { Vec::new() };
-        let mut frame = Frame::new(source, Regions::inside(source, &self.weights, 0, &first));
+        let regions = Regions::inside(source, &self.weights, 0, &first);
+        let mut frame = Frame::new(source, regions);
+        if is_entry && self.manifest.gradients.is_empty() {
+            frame.find_slopes(&first);
+        }
         let inputs = self.bind_arguments(&mut body, source, &reads, is_entry);
         frame.bind(&inputs);
         self.numbers(&mut body, &mut frame);

@@ -4,9 +4,9 @@
 //! statements; types, the functions that it calls and its placeholders become those of that module.
 
 use super::body::Results;
+use super::helper::Hash;
 use super::{Callee, Lowering, in_place};
 use crate::graph::{Function, Graph, Origin};
-use crate::intrinsic::Helper;
 use crate::manifest::{self, Manifest};
 use crate::naming::{Names, renumber};
 use naga::{Block, Expression, Handle, Span, Statement};
@@ -22,7 +22,7 @@ pub struct Objects {
     names: Names,
     /// By the place of the finished function.
     objects: Vec<Option<Object>>,
-    helpers: BTreeMap<Helper, Object>,
+    helpers: BTreeMap<Hash, Object>,
     /// Which finished function, or which helper, a function of the module is.
     meanings: FxHashMap<Handle<naga::Function>, Meaning>,
 }
@@ -40,7 +40,7 @@ struct Object {
 #[derive(Clone, Copy, Debug)]
 enum Meaning {
     Finished(u32),
-    Helper(Helper),
+    Helper(Hash),
 }
 
 /// What a module has taken over.
@@ -66,11 +66,12 @@ impl Objects {
     pub fn of(graph: &Graph) -> Objects {
         let (nothing, manifest) = (Objects::default(), no_manifest());
         let mut l = Lowering::new(graph, &manifest, SmolStr::default(), &nothing);
-        let helpers = Helper::ALL.map(|helper| {
+        let helpers = Hash::all().map(|hash| {
             let start = l.names.len();
-            let function = l.helper(helper);
-            (helper, Object { function, names: start..l.names.len(), results: Results::default() })
+            let function = l.helper(hash);
+            (hash, Object { function, names: start..l.names.len(), results: Results::default() })
         });
+        let helpers: BTreeMap<Hash, Object> = helpers.collect();
         let in_place = in_place(graph);
         let entry = graph.functions.len().saturating_sub(1);
         let mut objects = Vec::new();
@@ -86,13 +87,13 @@ impl Objects {
         }
         let finished = (0..).zip(&objects);
         let finished = finished.filter_map(|(i, o)| Some((o.as_ref()?.function, Meaning::Finished(i))));
-        let helping = helpers.iter().map(|(helper, object)| (object.function, Meaning::Helper(*helper)));
+        let helping = helpers.iter().map(|(hash, object)| (object.function, Meaning::Helper(*hash)));
         let meanings = finished.chain(helping).collect();
         let module = l.module;
         objects.iter_mut().for_each(|object| {
             object.take_if(|object| uses_tables(&module.functions[object.function]));
         });
-        Objects { module, names: l.names, objects, helpers: helpers.into(), meanings }
+        Objects { module, names: l.names, objects, helpers, meanings }
     }
 
     /// A function of a graph, if it was lowered.
@@ -156,7 +157,7 @@ impl Lowering<'_> {
     }
 
     /// Takes over a function that shaders bring along, if it was lowered ahead.
-    pub(super) fn link_helper(&mut self, helper: Helper, name: &str) -> Option<naga::Function> {
+    pub(super) fn link_helper(&mut self, helper: Hash, name: &str) -> Option<naga::Function> {
         let object = self.objects.helpers.get(&helper).filter(|object| self.can_link(object))?;
         let mut function = self.copy(object);
         function.name = Some(self.names.placeholder(name));

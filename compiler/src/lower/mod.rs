@@ -14,6 +14,7 @@ mod helper;
 mod link;
 mod operation;
 mod outline;
+mod slope;
 mod table;
 mod types;
 mod wrap;
@@ -21,12 +22,12 @@ mod wrap;
 use crate::contract::{Reads, reads_of_functions};
 use crate::graph::regions::Weights;
 use crate::graph::{Constant, Function, FunctionId, Graph, Operation};
-use crate::intrinsic::Helper;
 use crate::manifest::Manifest;
 use crate::naming::{self, Names, Scope};
 pub use link::Objects;
 
 use body::Results;
+use helper::Hash;
 use link::Linked;
 use naga::{Handle, Span};
 use rustc_hash::FxHashMap;
@@ -82,7 +83,7 @@ struct Lowering<'a> {
     reads: Vec<Reads>,
     /// Those lowered so far; folds' steps and conditions stand in place and are none.
     functions: Vec<Option<Callee>>,
-    helpers: BTreeMap<Helper, Handle<naga::Function>>,
+    helpers: BTreeMap<Hash, Handle<naga::Function>>,
     tables: FxHashMap<Arc<[Constant]>, Handle<naga::Constant>>,
     results: Vec<Results>,
     /// What was lowered ahead.

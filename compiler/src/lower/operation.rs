@@ -3,9 +3,10 @@
 use super::Lowering;
 use super::body::Body;
 use super::frame::{Frame, Splat, has_sampler, splat_of};
+use super::helper::{self, Drawn, Hash, Pick};
 use super::types::{numeric, scalar, size};
 use crate::graph::{Axis, Constant, FunctionId, Level, Operation, Scalar, Slot, Type, Value};
-use crate::intrinsic::{Form, Intrinsic, MULTIPLY, MULTIPLY_INT};
+use crate::intrinsic::{Form, Helper, Intrinsic, MULTIPLY, MULTIPLY_INT, TO_FLOAT};
 use naga::{BinaryOperator, Expression, Handle, Literal, MathFunction, ScalarKind, SwizzleComponent};
 
 impl Lowering<'_> {
@@ -24,10 +25,13 @@ impl Lowering<'_> {
             Operation::Builtin(intrinsic, arguments) => {
                 self.builtin(body, frame, value, *intrinsic, arguments)
             }
-            Operation::Compose(parts) => self.compose(body, frame, value, parts),
+            Operation::Compose(parts) => self.composed(body, frame, frame.function.ty(value), parts),
             Operation::Extract(vector, i) => {
                 let base = self.operand(body, frame, *vector);
-                body.add(Expression::AccessIndex { base, index: u32::from(*i) })
+                match frame.width(*vector) {
+                    1 => base,
+                    _ => body.add(Expression::AccessIndex { base, index: u32::from(*i) }),
+                }
             }
             Operation::Select(condition, yes, no) => {
                 let (condition, accept, reject) =
@@ -70,16 +74,8 @@ impl Lowering<'_> {
                 _ => frame.get(*call),
             },
             Operation::Derivative(v, axis, _) => {
-                if let Some(given) = body.gradients.get(&(frame.get(*v), *axis)) {
-                    return *given;
-                }
-                let axis = match axis {
-                    Axis::X => naga::DerivativeAxis::X,
-                    Axis::Y => naga::DerivativeAxis::Y,
-                };
-                let ctrl = naga::DerivativeControl::None;
-                let expr = frame.get(*v);
-                body.add(Expression::Derivative { axis, ctrl, expr })
+                let given = body.gradients.get(&(frame.get(*v), *axis)).copied();
+                given.unwrap_or_else(|| derivative(body, frame.get(*v), *axis))
             }
         }
     }
@@ -108,13 +104,7 @@ impl Lowering<'_> {
     }
 
     /// Runs of components of one vector are written as a swizzle.
-    fn compose(
-        &mut self,
-        body: &mut Body,
-        frame: &Frame,
-        value: Value,
-        parts: &[Value],
-    ) -> Handle<Expression> {
+    fn composed(&mut self, body: &mut Body, frame: &Frame, ty: Type, parts: &[Value]) -> Handle<Expression> {
         let width = parts.len() as u8;
         if parts.iter().all(|part| part == &parts[0]) {
             let value = frame.get(parts[0]);
@@ -133,7 +123,7 @@ impl Lowering<'_> {
         if let [whole] = components.as_slice() {
             return *whole;
         }
-        let ty = self.types.get(&mut self.module.types, frame.function.ty(value));
+        let ty = self.types.get(&mut self.module.types, ty);
         body.add(Expression::Compose { ty, components })
     }
 
@@ -149,9 +139,11 @@ impl Lowering<'_> {
 
     fn swizzle(&mut self, body: &mut Body, frame: &Frame, vector: Value, run: &[u8]) -> Handle<Expression> {
         let base = self.operand(body, frame, vector);
-        if usize::from(frame.function.ty(vector).width()) == run.len()
-            && run.iter().enumerate().all(|(i, c)| i == usize::from(*c))
-        {
+        let width = frame.width(vector);
+        if width == 1 {
+            return body.add(Expression::Splat { size: size(run.len() as u8), value: base });
+        }
+        if usize::from(width) == run.len() && run.iter().enumerate().all(|(i, c)| i == usize::from(*c)) {
             return base;
         }
         let mut pattern = [SwizzleComponent::X; 4];
@@ -231,12 +223,25 @@ impl Lowering<'_> {
         intrinsic: Intrinsic,
         arguments: &[Value],
     ) -> Handle<Expression> {
+        if let Some(slope) = frame.slope(value) {
+            return derivative(body, frame.get(slope.product), slope.axis);
+        }
         if let [a, b] = arguments
             && matches!(intrinsic, MULTIPLY | MULTIPLY_INT)
             && let Some(product) =
                 self.scaled(body, frame, *a, *b).or_else(|| self.scaled(body, frame, *b, *a))
         {
             return product;
+        }
+        if let Some(pick) = frame.pick(value) {
+            return self.pick(body, frame.get(arguments[0]), pick);
+        }
+        if let (TO_FLOAT, Some(Splat::Value(int))) = (intrinsic, splat_of(frame.function, arguments[0])) {
+            let value = body.convert(frame.get(int), ScalarKind::Float);
+            return body.add(Expression::Splat { size: size(frame.width(arguments[0])), value });
+        }
+        if let Some(drawn) = frame.drawn(value) {
+            return self.random(body, frame, value, arguments[0], drawn);
         }
         let mut operands = arguments.iter().map(|v| self.operand(body, frame, *v));
         let Some(arg) = operands.next() else { unreachable!("an intrinsic has an argument") };
@@ -267,12 +272,38 @@ impl Lowering<'_> {
                 body.add(Expression::Select { condition: arg, accept, reject })
             }
             (Form::Choose, ..) => unreachable!("a choice has three arguments"),
-            (Form::Helper(helper), ..) => {
-                let function = self.helper(helper);
-                body.call(function, vec![arg], frame.author(value).unwrap_or("random"))
-            }
+            (Form::Helper(Helper::Hash), ..) => unreachable!("a hash is called"),
             (Form::Expand(_), ..) => unreachable!("expanded before lowering"),
         }
+    }
+
+    /// The next of a word on the way to a pick.
+    fn pick(&mut self, body: &mut Body, word: Handle<Expression>, pick: Pick) -> Handle<Expression> {
+        let Pick::Upper(bits) = pick else { return word };
+        let shift = body.literal(Literal::U32(32 - bits));
+        let upper = body.binary(BinaryOperator::ShiftRight, word, shift);
+        body.convert(upper, ScalarKind::Sint)
+    }
+
+    /// Random numbers, those that are read.
+    fn random(
+        &mut self,
+        body: &mut Body,
+        frame: &Frame,
+        value: Value,
+        argument: Value,
+        drawn: Drawn,
+    ) -> Handle<Expression> {
+        let (argument, words) = match helper::words(frame.function, argument, drawn) {
+            Some([single]) => (frame.get(*single), 1),
+            Some(words) => {
+                let ty = Type::Vector(Scalar::Int, words.len() as u8);
+                (self.composed(body, frame, ty, words), words.len() as u8)
+            }
+            None => (self.operand(body, frame, argument), 4),
+        };
+        let function = self.helper(Hash { words, numbers: drawn.numbers });
+        body.call(function, vec![argument], frame.author_of_hash(value).unwrap_or("random"))
     }
 
     /// A vector times a scalar, where the other factor is a scalar in every component.
@@ -334,6 +365,14 @@ impl Lowering<'_> {
         let ty = super::Types::of(&mut self.module.types, numeric(scalar(Scalar::Float), 4));
         body.add(Expression::Compose { ty, components })
     }
+}
+
+fn derivative(body: &mut Body, expr: Handle<Expression>, axis: Axis) -> Handle<Expression> {
+    let axis = match axis {
+        Axis::X => naga::DerivativeAxis::X,
+        Axis::Y => naga::DerivativeAxis::Y,
+    };
+    body.add(Expression::Derivative { axis, ctrl: naga::DerivativeControl::None, expr })
 }
 
 /// A component of a known number.

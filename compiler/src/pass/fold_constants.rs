@@ -3,10 +3,11 @@
 //! What has known operands becomes a number, by the row that defines it. Multiplication by 0 may
 //! fold because values are numbers: what overflows has no defined value.
 
+use crate::graph::bounds::Bounds;
 use crate::graph::{Constant, Function, Operation, Scalar, Value};
 use crate::intrinsic::{
-    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, MULTIPLY, MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE,
-    SUBTRACT, SUBTRACT_INT,
+    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, Intrinsic, MAXIMUM_INT, MINIMUM_INT, MULTIPLY,
+    MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE, SUBTRACT, SUBTRACT_INT,
 };
 use smallvec::SmallVec;
 
@@ -70,11 +71,7 @@ fn is(function: &Function, value: Value, number: i32) -> bool {
     })
 }
 
-fn identity(
-    function: &Function,
-    intrinsic: crate::intrinsic::Intrinsic,
-    arguments: &[Value],
-) -> Option<Folded> {
+fn identity(function: &Function, intrinsic: Intrinsic, arguments: &[Value]) -> Option<Folded> {
     let is = |i: usize, number: i32| arguments.get(i).is_some_and(|v| is(function, *v, number));
     let keep = |i: usize| Some(Folded::Value(arguments[i]));
     match intrinsic {
@@ -99,6 +96,7 @@ fn identity(
         OR if is(0, 0) || is(1, 1) => keep(1),
         OR if is(1, 0) || is(0, 1) => keep(0),
         CHOOSE | CHOOSE_INT => choose(function, arguments),
+        MINIMUM_INT | MAXIMUM_INT => clamped(function, intrinsic, arguments),
         _ => None,
     }
 }
@@ -110,6 +108,17 @@ fn choose(function: &Function, arguments: &[Value]) -> Option<Folded> {
         return Some(Folded::Value(yes));
     }
     is(function, condition, 0).then_some(Folded::Value(no))
+}
+
+/// The lesser or the greater of a value and a number that it never passes is the value.
+fn clamped(function: &Function, intrinsic: Intrinsic, arguments: &[Value]) -> Option<Folded> {
+    let &[value, bound] = arguments else { return None };
+    let bound = known(function, bound)?;
+    let never_passes = (0..bound.width()).all(|i| {
+        let (bounds, bound) = (Bounds::within(function, value, i), i64::from(bound.int(usize::from(i))));
+        if intrinsic == MINIMUM_INT { bounds.high <= bound } else { bounds.low >= bound }
+    });
+    never_passes.then_some(Folded::Value(value))
 }
 
 fn compose(function: &Function, parts: &[Value]) -> Option<Folded> {

@@ -66,6 +66,10 @@ impl Gpu {
 
     /// Uploads a program's textures and builds the pipeline of one of its outputs.
     ///
+    /// The shaders are the texts in the program's passes, under the entry points that its manifest
+    /// names. A text written by hand is drawn in the place of the compiler's if it binds and names
+    /// the same: `program.passes.last_mut()` holds the texture's, in `wgsl`.
+    ///
     /// # Errors
     /// There is no such output, a table is missing, or the driver refuses the shader.
     pub fn prepare<'a>(

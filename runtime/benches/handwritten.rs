@@ -1,0 +1,92 @@
+//! The compiler's shader for basic tiling beside the one an expert writes by hand, on a software
+//! adapter: CPU time of the process a pixel, drawn in turns. The ratio of each round's two times is
+//! one number of the sample; its mean with a 95 % interval is what counts, and beside it the same of
+//! the compiler's shader against itself, which shows what this machine can tell apart.
+//!
+//! Run with `cargo bench -p texgraph-runtime --bench handwritten`.
+
+use cpu_time::ProcessTime;
+use std::path::Path;
+use texgraph_compiler::{Library, Options, Program, compile};
+use texgraph_runtime::gpu::{Gpu, Preference, Scene};
+use texgraph_runtime::project::Project;
+use texgraph_runtime::render::Request;
+use texgraph_runtime::resource::{Tables, load};
+
+const ROUNDS: usize = 60;
+const SIDE: u32 = 1024;
+/// Pictures that one time is taken of.
+const PICTURES: usize = 2;
+/// A graph, and the same by hand.
+const PAIRS: &[(&str, &str)] = &[("examples/tiling.tex", "benches/handwritten/tiling.wgsl")];
+
+fn main() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let gpu = match Gpu::new(Preference::Software) {
+        Ok(gpu) => gpu,
+        Err(error) => return println!("no software adapter: {error}"),
+    };
+    println!("{}, {SIDE}², {ROUNDS} rounds", gpu.name());
+    for (graph, by_hand) in PAIRS {
+        let (program, tables) = loaded(&root.join(graph));
+        let mut twin = program.clone();
+        let text = std::fs::read_to_string(root.join(by_hand)).expect("the shader is there");
+        twin.passes.last_mut().expect("a program has a pass").wgsl = text;
+        compare(&gpu, graph, [&program, &twin], &tables);
+    }
+}
+
+fn loaded(file: &Path) -> (Program, Tables) {
+    let library = Library::standard().expect("the library parses");
+    let project = Project::new(file, false);
+    let compiled = compile(&library, project.main(), &project, &Options::default());
+    let mut program = compiled.unwrap_or_else(|failure| panic!("{:?}", failure.diagnostics)).program;
+    let tables = load(&mut program, &project).expect("the pictures load");
+    (program, tables)
+}
+
+/// Ours, by hand, and ours again, in turns; each round begins with the next of them.
+fn compare(gpu: &Gpu, name: &str, [ours, by_hand]: [&Program; 2], tables: &Tables) {
+    let mut scenes = [ours, by_hand, ours].map(|program| gpu.prepare(program, tables, 0).expect("it draws"));
+    scenes.iter_mut().for_each(|scene| {
+        draw(scene);
+    });
+    let (mut paired, mut noise, mut costs) = (Vec::new(), Vec::new(), [0.0; 2]);
+    for round in 0..ROUNDS {
+        let mut taken = [0.0; 3];
+        for turn in 0..3 {
+            let i = (round + turn) % 3;
+            taken[i] = draw(&mut scenes[i]);
+        }
+        let [first, hand, second] = taken;
+        paired.push((first + second) / 2.0 / hand);
+        noise.push(first / second);
+        costs[0] += (first + second) / 2.0 / ROUNDS as f64;
+        costs[1] += hand / ROUNDS as f64;
+    }
+    let [ours, by_hand] = costs.map(|seconds| seconds * 1e9 / f64::from(SIDE * SIDE));
+    println!("{name}: {ours:.1} ns of CPU time a pixel, by hand {by_hand:.1}");
+    for (what, ratios) in [("ours over by hand", paired), ("ours over ours", noise)] {
+        let (mean, half) = interval(&ratios);
+        println!("  {what:18} {mean:.4}, 95 % within {:.4} to {:.4}", mean - half, mean + half);
+    }
+}
+
+/// Seconds of CPU time for one picture.
+fn draw(scene: &mut Scene<'_>) -> f64 {
+    let request = Request::new([SIDE, SIDE]);
+    let start = ProcessTime::now();
+    for _ in 0..PICTURES {
+        scene.render(&request, &|_| {}).expect("the adapter renders");
+    }
+    start.elapsed().as_secs_f64() / PICTURES as f64
+}
+
+/// Mean, and half the 95 % interval of it.
+fn interval(sample: &[f64]) -> (f64, f64) {
+    let count = sample.len() as f64;
+    let mean = sample.iter().sum::<f64>() / count;
+    let variance = sample.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    // Student's t of 59 degrees of freedom.
+    (mean, 2.0 * (variance / count).sqrt())
+}
