@@ -16,8 +16,12 @@ pub fn identifier(name: &str) -> SmolStr {
     if is_identifier(name) {
         return name.into();
     }
-    let mut out = String::with_capacity(name.len() + 2);
     let plain = name.bytes().take_while(u8::is_ascii_alphanumeric).count();
+    if plain == name.len() && name.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        // It ends in a digit.
+        return format_smolstr!("{name}_");
+    }
+    let mut out = String::with_capacity(name.len() + 2);
     let (plain, rest) = name.split_at(plain);
     out.push_str(plain);
     for c in rest.chars() {
@@ -96,8 +100,11 @@ impl Scope {
 
     /// The wished name, or one like it that is free here.
     pub fn name(&mut self, wish: &str) -> SmolStr {
-        let name = self.own(identifier(wish));
-        match self.taken.entry(name) {
+        let name = identifier(wish);
+        if let Some(tried) = self.taken.get(&name) {
+            return self.other(name, *tried);
+        }
+        match self.taken.entry(self.own(name)) {
             Entry::Vacant(free) => {
                 let name = free.key().clone();
                 free.insert(0);
@@ -112,7 +119,9 @@ impl Scope {
 
     /// The name, unless it is the module's or the language's.
     fn own(&self, name: SmolStr) -> SmolStr {
-        if is_of_module(&name, &self.module) || is_reserved(&name) {
+        // No word of the language ends in `_`.
+        let is_reserved = || !name.ends_with('_') && is_reserved(&name);
+        if is_of_module(&name, &self.module) || is_reserved() {
             format_smolstr!("{name}_value")
         } else {
             name
@@ -234,15 +243,19 @@ impl Names {
         }
     }
 
-    /// The name that a token stands for, and how it is declared.
+    /// The name that a token stands for, and how it is declared; `functions` have begun.
     fn meaning<'n>(
         &'n self,
         token: Token,
-        results: Option<&'n FxHashMap<u32, SmolStr>>,
+        results: &'n [FxHashMap<u32, SmolStr>],
+        functions: usize,
     ) -> Option<(&'n str, Kind)> {
         match token {
             Token::Placeholder(number) => self.0.get(number).map(|name| (name.text.as_str(), name.kind)),
-            Token::Result(number) => results?.get(&number).map(|name| (name.as_str(), Kind::Plain)),
+            Token::Result(number) => {
+                let results = results.get(functions.checked_sub(1)?)?;
+                results.get(&number).map(|name| (name.as_str(), Kind::Plain))
+            }
         }
     }
 }
@@ -293,6 +306,16 @@ impl Renaming<'_> {
         piece
     }
 
+    /// A piece that may be a name, or is left out.
+    fn piece(&mut self, piece: &str) {
+        let piece = if self.left_out == LeftOut::Nothing { piece } else { self.rest(piece) };
+        let names = self.names;
+        match token(piece.as_bytes()).and_then(|token| names.meaning(token, self.results, self.functions)) {
+            Some((name, kind)) => self.name(piece, name, kind),
+            None => self.text.push_str(piece),
+        }
+    }
+
     fn name(&mut self, placeholder: &str, name: &str, kind: Kind) {
         self.functions += usize::from(self.text.ends_with("fn "));
         if let Some(before) = kind.undeclared(&self.text) {
@@ -309,13 +332,13 @@ impl Renaming<'_> {
 }
 
 impl fmt::Write for Renaming<'_> {
+    #[inline]
     fn write_str(&mut self, piece: &str) -> fmt::Result {
-        let piece = if self.left_out == LeftOut::Nothing { piece } else { self.rest(piece) };
-        let names = self.names;
-        let results = self.results.get(self.functions.wrapping_sub(1));
-        match token(piece.as_bytes()).and_then(|token| names.meaning(token, results)) {
-            Some((name, kind)) => self.name(piece, name, kind),
-            None => self.text.push_str(piece),
+        // Most pieces are marks and numbers.
+        if self.left_out == LeftOut::Nothing && !matches!(piece.as_bytes().first(), Some(b'z' | b'_')) {
+            self.text.push_str(piece);
+        } else {
+            self.piece(piece);
         }
         Ok(())
     }
@@ -352,11 +375,10 @@ fn token(text: &[u8]) -> Option<Token> {
         [b'_', b'e', digits @ ..] => (digits, false),
         _ => return None,
     };
-    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
-        return None;
-    }
-    let add = |number: u32, digit: &u8| number.wrapping_mul(10).wrapping_add(u32::from(digit - b'0'));
-    let number = digits.iter().fold(0, add);
+    let add = |number: u32, digit: &u8| {
+        digit.is_ascii_digit().then(|| number.wrapping_mul(10).wrapping_add(u32::from(digit - b'0')))
+    };
+    let number = digits.iter().try_fold(0, add).filter(|_| !digits.is_empty())?;
     Some(if is_placeholder { Token::Placeholder(number as usize) } else { Token::Result(number) })
 }
 

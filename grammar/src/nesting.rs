@@ -40,7 +40,8 @@ enum LevelKind {
 pub(crate) fn check(scan: &Scan<'_>, tokens: &[Token]) -> Result<(), SyntaxError> {
     let mut counter = Counter::default();
     for token in tokens {
-        counter.step(token.kind, scan.text(*token));
+        let text = scan.source.as_bytes().get(token.span.range()).unwrap_or_default();
+        counter.step(token.kind, text);
         if counter.depth + counter.prefixes > MAX_NESTING {
             return Err(SyntaxError::new(SyntaxErrorKind::TooDeep, token.span));
         }
@@ -64,28 +65,31 @@ struct Counter {
 }
 
 impl Counter {
-    fn step(&mut self, kind: TokenKind, text: &str) {
+    fn step(&mut self, kind: TokenKind, text: &[u8]) {
         let closed_arm = self.closed_arm.take();
         let after_else = self.after_else.take();
         let mut is_operand = false;
-        match (kind, text) {
-            (TokenKind::Open, "{") => self.open_brace(after_else),
-            (TokenKind::Open, _) => self.open(LevelKind::Bracket, 1),
-            (TokenKind::Close, _) => {
+        match kind {
+            TokenKind::Open if text == b"{" => self.open_brace(after_else),
+            TokenKind::Open => self.open(LevelKind::Bracket, 1),
+            TokenKind::Close => {
                 self.close();
                 is_operand = true;
             }
-            (TokenKind::Word, "if") => self.open(LevelKind::If, 1 + after_else.unwrap_or(0)),
-            (TokenKind::Word, "fold") => self.open(LevelKind::Fold, 1),
-            (TokenKind::Word, "else") => self.after_else = closed_arm,
-            (TokenKind::Word, word) => {
-                is_operand = !matches!(word, "let" | "for" | "in" | "while" | "use" | "param");
-                self.prefixes *= usize::from(is_operand);
-            }
-            (TokenKind::Symbol, "-" | "!") if !self.after_operand => self.prefixes += 1,
-            (TokenKind::Symbol, ".") => {}
-            (TokenKind::Symbol | TokenKind::Unknown, _) => self.prefixes = 0,
-            (TokenKind::Number | TokenKind::Text | TokenKind::Color, _) => is_operand = true,
+            TokenKind::Word => match text {
+                b"if" => self.open(LevelKind::If, 1 + after_else.unwrap_or(0)),
+                b"fold" => self.open(LevelKind::Fold, 1),
+                b"else" => self.after_else = closed_arm,
+                b"let" | b"for" | b"in" | b"while" | b"use" | b"param" => self.prefixes = 0,
+                _ => is_operand = true,
+            },
+            TokenKind::Symbol => match text {
+                b"-" | b"!" if !self.after_operand => self.prefixes += 1,
+                b"." => {}
+                _ => self.prefixes = 0,
+            },
+            TokenKind::Unknown => self.prefixes = 0,
+            TokenKind::Number | TokenKind::Text | TokenKind::Color => is_operand = true,
         }
         self.after_operand = is_operand;
     }

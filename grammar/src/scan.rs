@@ -72,9 +72,6 @@ impl<'s> Scan<'s> {
 const SYMBOLS: [&str; 17] =
     ["..=", "..", "->", "=>", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "*=", "/=", "::", "++", "**"];
 
-/// What follows the first character of those.
-const SECOND: &[u8] = b".>=&|:+*";
-
 /// Scans a text of at most [`MAX_BYTES`] bytes.
 pub(crate) fn scan(source: &str) -> Result<Scan<'_>, SyntaxError> {
     if source.len() > MAX_BYTES {
@@ -103,22 +100,22 @@ struct Scanner<'s> {
 }
 
 impl Scanner<'_> {
-    /// Reads one token, one comment or one character of white space.
+    /// Reads one token, one comment or white space.
     fn step(&mut self) {
         let start = self.at;
         match self.bytes[start] {
-            b' ' | b'\t' | b'\r' | b'\n' => self.at += 1,
+            b' ' | b'\t' | b'\r' | b'\n' => self.skip(|byte| matches!(byte, b' ' | b'\t' | b'\r' | b'\n')),
             b'/' if self.looking_at("//") => self.line_comment(),
             b'/' if self.looking_at("/*") => self.block_comment(),
             b'"' => self.text(),
             b'#' => self.color(),
             b'0'..=b'9' => self.number(),
+            b'(' | b'[' | b'{' => self.mark(TokenKind::Open, 1),
+            b')' | b']' | b'}' => self.mark(TokenKind::Close, 1),
             byte if is_word(byte) => {
                 self.skip_word();
                 self.push(TokenKind::Word, start);
             }
-            b'(' | b'[' | b'{' => self.mark(TokenKind::Open, 1),
-            b')' | b']' | b'}' => self.mark(TokenKind::Close, 1),
             _ => self.symbol(),
         }
     }
@@ -145,10 +142,14 @@ impl Scanner<'_> {
         self.scan.errors.push(SyntaxError::new(kind, Span::new(start, end)));
     }
 
+    #[inline]
+    fn skip(&mut self, is_in: impl Fn(u8) -> bool) {
+        let rest = &self.bytes[self.at..];
+        self.at += rest.iter().position(|byte| !is_in(*byte)).unwrap_or(rest.len());
+    }
+
     fn skip_word(&mut self) {
-        while is_word(self.byte(0)) {
-            self.at += 1;
-        }
+        self.skip(is_word);
     }
 
     fn line_end(&self) -> usize {
@@ -245,18 +246,32 @@ impl Scanner<'_> {
 
     fn symbol(&mut self) {
         // Most marks are single.
-        let is_long = SECOND.contains(&self.byte(1));
+        let is_long = matches!(self.byte(1), b'.' | b'>' | b'=' | b'&' | b'|' | b':' | b'+' | b'*');
         if is_long && let Some(symbol) = SYMBOLS.iter().find(|symbol| self.looking_at(symbol)) {
             return self.mark(TokenKind::Symbol, symbol.len());
         }
-        let rest = &self.scan.source[self.at..];
-        let length = rest.chars().next().map_or(1, char::len_utf8);
-        let known = b"+-*/%<>=!|,:;.".contains(&self.byte(0));
-        let kind = if known { TokenKind::Symbol } else { TokenKind::Unknown };
-        self.mark(kind, length);
+        match self.bytes[self.at] {
+            b'+' | b'-' | b'*' | b'/' | b'%' | b'<' | b'>' | b'=' | b'!' | b'|' | b',' | b':' | b';'
+            | b'.' => self.mark(TokenKind::Symbol, 1),
+            _ => {
+                let rest = &self.scan.source[self.at..];
+                self.mark(TokenKind::Unknown, rest.chars().next().map_or(1, char::len_utf8));
+            }
+        }
     }
 }
 
+/// The bytes that words are made of, by their number.
+static WORD: [bool; 256] = {
+    let mut word = [false; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        word[byte] = (byte as u8).is_ascii_alphanumeric() || byte as u8 == b'_';
+        byte += 1;
+    }
+    word
+};
+
 fn is_word(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_'
+    WORD[usize::from(byte)]
 }

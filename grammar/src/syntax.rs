@@ -288,7 +288,7 @@ pub enum ExprKind {
     /// `(inner)`: kept for the formatter.
     Paren(Box<Expr>),
     /// `name<n>(arguments)`
-    Call(Call),
+    Call(Box<Call>),
     /// `base.field.method(…)[i]`: at least one link.
     Postfix {
         /// What the links apply to.

@@ -9,7 +9,7 @@ use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, View, ViewI
 use crate::manifest::{Recipe, Stop};
 use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, SHARED, made_by};
 use std::rc::Rc;
-use texgraph_grammar::syntax::Input;
+use texgraph_grammar::syntax::{Input, TypeKind};
 
 /// Stands for the resource of the shared tables while it is not made.
 const SHARED_RESOURCE: u32 = u32::MAX;
@@ -174,7 +174,7 @@ pub fn view_field(f: &mut Frame<'_>, view: crate::graph::Value, name: &str) -> O
 
 /// The arguments of a ramp with its stops, which are written one after the other, as one list.
 pub fn joined_stops<'a>(head: Head<'a>, given: &[Given<'a>]) -> Option<arguments::Arguments<'a>> {
-    head.inputs.first().filter(|input| crate::check::types::show(&input.ty) == STOPS)?;
+    head.inputs.first().filter(|input| is_named(input, STOPS))?;
     let is_stop = |given: &&Given<'a>| given.name.is_none() && matches!(given.wire, Wire::List(_));
     let stops: Vec<(Wire, Place)> =
         given.iter().take_while(is_stop).map(|given| (given.wire.clone(), given.place)).collect();
@@ -196,14 +196,19 @@ fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<A
             None => Err(constructors::not_known(place, name)),
         },
         Wire::Node(_) => Ok(Argument::Node),
-        Wire::List(items) if crate::check::types::show(&input.ty) == "texts" => texts(name, items, place),
-        Wire::List(items) if crate::check::types::show(&input.ty) == STOPS => {
+        Wire::List(items) if is_named(input, "texts") => texts(name, items, place),
+        Wire::List(items) if is_named(input, STOPS) => {
             let stops = items.iter().map(|(wire, at)| stop(f, name, wire, *at));
             stops.collect::<Result<_, _>>().map(Argument::Stops)
         }
         Wire::List(items) => rows(f, name, items, place),
         _ => Err(constructors::wrong_argument(place, name, "a constant")),
     }
+}
+
+/// Whether an input's type is the plain name.
+fn is_named(input: &Input, wanted: &str) -> bool {
+    matches!(&input.ty.kind, TypeKind::Named { name, .. } if name.text == wanted)
 }
 
 /// The type of a ramp's stops.

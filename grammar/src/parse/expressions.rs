@@ -83,7 +83,7 @@ impl<'s> Builder<'s> {
             Op::And,
             Op::Or,
         ];
-        let operator = ALL.into_iter().find(|operator| operator.symbol() == pair.text);
+        let operator = ALL.into_iter().find(|operator| operator.symbol() == pair.text());
         operator.ok_or_else(|| self.missing("an operator"))
     }
 
@@ -91,7 +91,7 @@ impl<'s> Builder<'s> {
     fn unary(&mut self, parts: &mut Parts<'s>) -> Built<Expr> {
         let mut operators = Vec::new();
         while let Some(prefix) = parts.accept(Rule::prefix) {
-            let operator = if prefix.text == "-" { UnaryOperator::Negate } else { UnaryOperator::Not };
+            let operator = if prefix.text() == "-" { UnaryOperator::Negate } else { UnaryOperator::Not };
             operators.push((operator, prefix.span));
         }
         let operand = self.next(parts, "an operand")?;
@@ -179,7 +179,7 @@ impl<'s> Builder<'s> {
             Rule::choice => self.choice(pair)?,
             Rule::fold => ExprKind::Fold(Box::new(self.fold(pair)?)),
             Rule::reference => match self.reference(pair)? {
-                (call, true) => ExprKind::Call(call),
+                (call, true) => ExprKind::Call(Box::new(call)),
                 (call, false) => ExprKind::Name(call.name.text),
             },
             _ => self.literal(pair),
@@ -206,7 +206,7 @@ impl<'s> Builder<'s> {
         let span = pair.span;
         let mut parts = self.parts_of(pair);
         let start = Box::new(self.next_expr(&mut parts)?);
-        let inclusive = self.next(&mut parts, "`..`")?.text == "..=";
+        let inclusive = self.next(&mut parts, "`..`")?.text() == "..=";
         let end = Box::new(self.next_expr(&mut parts)?);
         Ok(Range { start, end, inclusive, span })
     }

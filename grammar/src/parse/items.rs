@@ -177,8 +177,8 @@ impl<'s> Builder<'s> {
             return Ok(Dim::Name(self.name(pair)));
         }
         let span = pair.span;
-        let number = pair.text.parse().unwrap_or_else(|_| {
-            let text = pair.text.to_string();
+        let number = pair.text().parse().unwrap_or_else(|_| {
+            let text = pair.text().to_string();
             self.errors.push(SyntaxError::new(SyntaxErrorKind::NumberTooLarge { text }, span));
             0
         });
@@ -209,7 +209,7 @@ impl<'s> Builder<'s> {
 
     fn pattern(&self, pair: Pair<'s>) -> Built<Pattern> {
         let span = pair.span;
-        let is_record = pair.text.starts_with('(');
+        let is_record = pair.text().starts_with('(');
         let mut names = self.names(pair);
         match names.pop() {
             Some(name) if !is_record => Ok(Pattern::Name(name)),

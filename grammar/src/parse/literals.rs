@@ -10,14 +10,14 @@ impl<'s> Builder<'s> {
     pub(super) fn literal(&mut self, pair: Pair<'s>) -> ExprKind {
         match pair.rule {
             Rule::text => ExprKind::Text(self.text(pair)),
-            Rule::color => ExprKind::Color(color(pair.text)),
-            Rule::boolean => ExprKind::Bool(pair.text == "true"),
+            Rule::color => ExprKind::Color(color(pair.text())),
+            Rule::boolean => ExprKind::Bool(pair.text() == "true"),
             _ => self.number(pair),
         }
     }
 
     fn number(&mut self, pair: Pair<'s>) -> ExprKind {
-        let text = pair.text;
+        let text = pair.text();
         if text.bytes().all(|byte| byte.is_ascii_digit()) {
             return ExprKind::Int(text.parse().ok());
         }
@@ -37,7 +37,7 @@ impl<'s> Builder<'s> {
     /// The value of a string literal.
     pub(super) fn text(&mut self, pair: Pair<'s>) -> String {
         let span = pair.span;
-        let quoted = pair.text;
+        let quoted = pair.text();
         let inner = quoted.get(1..quoted.len() - 1).unwrap_or_default();
         let mut value = String::with_capacity(inner.len());
         let mut rest = inner;

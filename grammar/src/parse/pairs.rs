@@ -14,9 +14,16 @@ pub(super) struct Pair<'s> {
     pub rule: Rule,
     /// Where it stands in the file.
     pub span: Span,
-    pub text: &'s str,
+    source: &'s str,
     /// What it is made of.
     steps: &'s [Step],
+}
+
+impl<'s> Pair<'s> {
+    /// What stands there.
+    pub fn text(&self) -> &'s str {
+        self.source.get(self.span.range()).unwrap_or_default()
+    }
 }
 
 /// The children of a node, in order; marks are none.
@@ -36,8 +43,8 @@ impl<'s> Iterator for Parts<'s> {
         let (this, rest) = self.steps.split_at_checked(step.size as usize)?;
         self.steps = rest;
         let span = Span { start: step.span.start + self.offset, end: step.span.end + self.offset };
-        let text = self.source.get(span.range()).unwrap_or_default();
-        Some(Pair { rule: step.rule, span, text, steps: this.get(1..).unwrap_or_default() })
+        let steps = this.get(1..).unwrap_or_default();
+        Some(Pair { rule: step.rule, span, source: self.source, steps })
     }
 }
 
@@ -72,7 +79,7 @@ impl<'s> Builder<'s> {
 
     /// A `name` node as a name.
     pub(super) fn name(&self, node: Pair<'s>) -> Name {
-        Name { text: node.text.into(), span: node.span }
+        Name { text: node.text().into(), span: node.span }
     }
 
     /// The next part as a name.
