@@ -9,9 +9,11 @@ mod count;
 
 use count::{Count, count};
 use libtest_mimic::{Arguments, Failed, Trial};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use texgraph_compiler::{Library, Options, Program, compile, diagnostic::render};
+use texgraph_runtime::cpu;
 use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::picture::Picture;
 use texgraph_runtime::project::Project;
@@ -34,6 +36,11 @@ fn main() {
         let (ignored, gpu) = (gpu.is_err() && !required, gpu.clone());
         let run = move || gives_the_same(&*gpu.map_err(|error| error.to_string())?, graph, by_hand);
         trials.push(Trial::test(format!("gives_the_same::{graph}"), run).with_ignored_flag(ignored));
+    }
+    for count in [2, 3, 7, 16, 100, 1024] {
+        let (ignored, gpu) = (gpu.is_err() && !required, gpu.clone());
+        let run = move || picks(&*gpu.map_err(|error| error.to_string())?, count);
+        trials.push(Trial::test(format!("picks_of::{count}"), run).with_ignored_flag(ignored));
     }
     libtest_mimic::run(&arguments, trials).exit();
 }
@@ -99,5 +106,29 @@ fn gives_the_same(gpu: &Gpu, graph: &str, by_hand: &str) -> Result<(), Failed> {
             return Err(format!("over {region:?}: {difference:?}").into());
         }
     }
+    Ok(())
+}
+
+/// One of `count` drawn for each of 65,536 cells: none of them `count` itself, the same ones by the
+/// bits of the hash as by its number, with no limit in the shader where rounding can't reach it.
+fn picks(gpu: &Gpu, count: u32) -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("picks.tex");
+    let source = format!(
+        "texture picks(uv: vec2) -> (pick: float) {{\n\
+         pick = float(virtual_index(ifloor(uv * 256.0), {count}, stream: 5))\n}}\n"
+    );
+    std::fs::write(&file, source)?;
+    let (program, tables) = loaded(&file)?;
+    let request = Request::new([256, 256]);
+    let mut scene = gpu.prepare(&program, &tables, 0).map_err(|error| error.to_string())?;
+    let theirs = scene.render(&request, &|_| {}).map_err(|error| error.to_string())?;
+    let ours = cpu::render(&program, &tables, &request, &|_| {}).map_err(|error| error.to_string())?;
+    assert_eq!(ours.pixels, theirs.pixels);
+    let drawn: BTreeSet<u32> = ours.pixels.iter().map(|pixel| pixel[0] as u32).collect();
+    let all: BTreeSet<u32> = (0..count).collect();
+    assert_eq!(drawn, all);
+    let is_limited = program.texture().wgsl.contains("min(");
+    assert_eq!(is_limited, !count.is_power_of_two(), "{}", program.texture().wgsl);
     Ok(())
 }
