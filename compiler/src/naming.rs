@@ -65,14 +65,14 @@ const LETTERS: &[u8; 26] = b"abcdefghijklmnopqrstuvwxyz";
 const DIGITS: &[u8; 10] = b"0123456789";
 
 /// Writes a number in the system of these digits, two or more.
-fn push_number(text: &mut String, mut number: usize, digits: &[u8]) {
-    let start = text.len();
-    loop {
-        text.insert(start, char::from(digits[number % digits.len()]));
-        number /= digits.len();
-        if number == 0 {
-            break;
-        }
+fn push_number(text: &mut String, number: usize, digits: &[u8]) {
+    let mut size = 1;
+    while number / size >= digits.len() {
+        size *= digits.len();
+    }
+    while size > 0 {
+        text.push(char::from(digits[number / size % digits.len()]));
+        size /= digits.len();
     }
 }
 

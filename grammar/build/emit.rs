@@ -88,12 +88,16 @@ impl Emitter {
     fn skip(&mut self) -> Result<String, String> {
         let mode = Mode { skips: false, records: false };
         let [space, comment] = ["WHITESPACE", "COMMENT"].map(|name| Expr::Ident(name.to_owned()));
-        let either = Expr::Rep(Box::new(Expr::Choice(Box::new(space), Box::new(comment))));
-        let code = self.expr(&either, mode)?;
-        let begins = next_is(first(&self.rules, &either, false).bytes);
+        let [spaces, comments] = [space, comment].map(|expr| Expr::Rep(Box::new(expr)));
+        let begins = first(&self.rules, &spaces, false).bytes.or(first(&self.rules, &comments, false).bytes);
+        let begins = next_is(begins);
+        let (spaces, comments) = (self.expr(&spaces, mode)?, self.expr(&comments, mode)?);
+        // White space is mostly one stretch, without a comment behind it.
         Ok(format!(
             "#[inline] fn skip(&mut self) -> bool {{ !{begins} || self.skip_some() }}\n\
-             fn skip_some(&mut self) -> bool {{ let from = self.at; {code}; self.skipped(from) }}\n"
+             fn skip_some(&mut self) -> bool {{ let from = self.at; \
+             loop {{ let at = self.at; {spaces} && {comments}; if self.at == at || !{begins} {{ break; }} }} \
+             self.skipped(from) }}\n"
         ))
     }
 
@@ -180,10 +184,11 @@ impl Emitter {
     }
 
     fn repetition(&mut self, inner: &Expr, mode: Mode) -> Result<String, String> {
-        let code = self.expr(inner, mode)?;
-        if single(&self.rules, inner).is_some() && !mode.skips {
-            return Ok(format!("({{ while {code} {{}} true }})"));
+        let single = single(&self.rules, inner).filter(|_| !mode.skips);
+        if let Some(pattern) = single.and_then(Bytes::pattern) {
+            return Ok(format!("self.run(|byte| matches!(byte, {pattern}))"));
         }
+        let code = self.expr(inner, mode)?;
         let begins = next_is(first(&self.rules, inner, mode.skips).bytes);
         let skip = if mode.skips { "self.skip() && " } else { "" };
         Ok(format!(

@@ -65,6 +65,14 @@ impl Reader<'_> {
         true
     }
 
+    /// Takes all bytes of a kind.
+    #[inline]
+    fn run(&mut self, is_one: impl Fn(u8) -> bool) -> bool {
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        self.at += rest.iter().position(|byte| !is_one(*byte)).unwrap_or(rest.len());
+        true
+    }
+
     /// Takes a word.
     #[inline]
     fn word(&mut self, word: &[u8]) -> bool {
