@@ -1,4 +1,4 @@
-//! `texgraph explain`: the long page of an error code, or the list of all codes.
+//! `texgraph explain`: the long page of the code of an error or a warning, or the list of all codes.
 
 use crate::args::Explain;
 use crate::output;
@@ -14,11 +14,11 @@ const OFFERED: usize = 3;
 /// There is no such code.
 pub fn run(args: &Explain) -> Result<(), Problem> {
     let Some(asked) = &args.code else { return output::print(&list()) };
-    let number = number(asked);
-    let page = number.and_then(|number| codes::explain(&format!("E{number:04}")));
+    let code = code(asked);
+    let page = code.and_then(|(letter, number)| codes::explain(&format!("{letter}{number:04}")));
     match page {
         Some(page) => output::print(&format!("{}\n", page.trim_end())),
-        None => Err(unknown(asked, number)),
+        None => Err(unknown(asked, code)),
     }
 }
 
@@ -29,21 +29,22 @@ fn list() -> String {
     codes::PAGES.iter().map(|(code, page)| format!("{code}  {}\n", title(page))).collect()
 }
 
-/// The number of a code as people write it: `E0103`, `e103`, `103`.
-fn number(code: &str) -> Option<u32> {
-    let code = code.trim();
-    code.strip_prefix(['E', 'e']).unwrap_or(code).parse().ok()
+/// The letter and the number of a code as people write it: `E0103`, `e103`, `103`, `w801`.
+fn code(written: &str) -> Option<(char, u32)> {
+    let written = written.trim();
+    let letter = if written.starts_with(['W', 'w']) { 'W' } else { 'E' };
+    Some((letter, written.strip_prefix(['E', 'e', 'W', 'w']).unwrap_or(written).parse().ok()?))
 }
 
-fn unknown(asked: &str, asked_number: Option<u32>) -> Problem {
-    let Some(asked_number) = asked_number else {
+fn unknown(asked: &str, code_asked: Option<(char, u32)>) -> Problem {
+    let Some((letter, asked_number)) = code_asked else {
         let hint = "a code looks like E0501; `texgraph explain` lists all";
         return Problem::Usage(format!("`{asked}` is no error code: {hint}"));
     };
     let mut near: Vec<&str> = codes::PAGES.iter().map(|(code, _)| *code).collect();
-    near.sort_by_key(|code| number(code).map(|number| number.abs_diff(asked_number)));
+    near.sort_by_key(|known| code(known).map(|(of, number)| (of != letter, number.abs_diff(asked_number))));
     near.truncate(OFFERED);
     near.sort_unstable();
     let near = near.join(", ");
-    Problem::Usage(format!("there is no error code E{asked_number:04}; near it are {near}"))
+    Problem::Usage(format!("there is no error code {letter}{asked_number:04}; near it are {near}"))
 }

@@ -19,6 +19,15 @@ fn all_errors_of_all_files_are_shown() {
 }
 
 #[test]
+fn warnings_are_shown_and_fail_nothing() {
+    let jumps = "texture t(uv: vec2) -> (height: float) {\n    height = footprint(hash(ifloor(uv)).x)\n}\n";
+    let shop = Workshop::new(&[("a.tex", jumps)]);
+    let run = shop.run(&["check", "a.tex", "--message-format", "short"]);
+    assert_eq!((run.code, run.out.as_str()), (0, ""), "{run:#?}");
+    assert!(run.err.starts_with("a.tex:2:24: warning[W0801]: "), "{run:#?}");
+}
+
+#[test]
 fn formats_differ() {
     let shop = Workshop::new(&[("a.tex", WRONG)]);
     let short = shop.run(&["check", "a.tex", "--message-format", "short"]);

@@ -42,6 +42,8 @@ fn codes_are_explained_however_they_are_written() {
     }
     let list = shop.run(&["explain"]);
     assert!(list.out.contains("E0501  A file that a resource names is not there\n"), "{list:#?}");
+    let warning = shop.run(&["explain", "W0801"]);
+    assert!(warning.code == 0 && warning.out == shop.run(&["explain", "w801"]).out, "{warning:#?}");
     shop.run(&["explain", "E9998"]).fails(2, "near it are E0");
     shop.run(&["explain", "grass"]).fails(2, "`grass` is no error code");
 }
