@@ -335,10 +335,11 @@ impl fmt::Write for Renaming<'_> {
     #[inline]
     fn write_str(&mut self, piece: &str) -> fmt::Result {
         // Most pieces are marks and numbers.
-        if self.left_out == LeftOut::Nothing && !matches!(piece.as_bytes().first(), Some(b'z' | b'_')) {
-            self.text.push_str(piece);
-        } else {
-            self.piece(piece);
+        match piece.as_bytes() {
+            _ if self.left_out != LeftOut::Nothing => self.piece(piece),
+            [mark] if mark.is_ascii() => self.text.push(char::from(*mark)),
+            [b'z' | b'_', ..] => self.piece(piece),
+            _ => self.text.push_str(piece),
         }
         Ok(())
     }

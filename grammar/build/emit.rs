@@ -89,14 +89,15 @@ impl Emitter {
         let mode = Mode { skips: false, records: false };
         let [space, comment] = ["WHITESPACE", "COMMENT"].map(|name| Expr::Ident(name.to_owned()));
         let [spaces, comments] = [space, comment].map(|expr| Expr::Rep(Box::new(expr)));
-        let begins = first(&self.rules, &spaces, false).bytes.or(first(&self.rules, &comments, false).bytes);
-        let begins = next_is(begins);
+        let comment = first(&self.rules, &comments, false).bytes;
+        let begins = next_is(first(&self.rules, &spaces, false).bytes.or(comment));
+        let comment = next_is(comment);
         let (spaces, comments) = (self.expr(&spaces, mode)?, self.expr(&comments, mode)?);
         // White space is mostly one stretch, without a comment behind it.
         Ok(format!(
             "#[inline] fn skip(&mut self) -> bool {{ !{begins} || self.skip_some() }}\n\
-             fn skip_some(&mut self) -> bool {{ let from = self.at; \
-             loop {{ let at = self.at; {spaces} && {comments}; if self.at == at || !{begins} {{ break; }} }} \
+             fn skip_some(&mut self) -> bool {{ let from = self.at; {spaces}; \
+             while {comment} {{ let at = self.at; {comments} && {spaces}; if self.at == at {{ break; }} }} \
              self.skipped(from) }}\n"
         ))
     }
