@@ -337,11 +337,11 @@ impl<'a> Checker<'a> {
             }
             (Declared::Choice(words), wire) => {
                 let written = match wire {
-                    Wire::Word(word, _) => Some(word.as_str()),
+                    Wire::Word(word) => Some(word.text.as_str()),
                     _ => word,
                 };
                 match written.filter(|word| words.iter().any(|w| w == word)) {
-                    Some(word) => Wire::Word(word.to_owned(), place),
+                    Some(word) => Wire::word(word, place),
                     None => self.report(
                         f,
                         sentences::unknown_choice(place, input, words, written.unwrap_or_default()),
@@ -355,7 +355,7 @@ impl<'a> Checker<'a> {
             (Declared::Text, Wire::Text(text)) => Wire::Text(text.clone()),
             (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire.clone(),
             (Declared::Stops, wire @ Wire::List(_)) => wire.clone(),
-            (_, Wire::Word(word, at)) => self.unknown_value(f, word, *at),
+            (_, Wire::Word(word)) => self.unknown_value(f, &word.text, word.place),
             (_, Wire::Callables(nodes)) => self.report(f, names::node_as_value(place, &nodes.name)),
             (declared, wire) => {
                 let found = types::describe(wire, |v| f.builder.ty(v));
@@ -376,8 +376,8 @@ impl<'a> Checker<'a> {
         match wire {
             Wire::Value(value) => return Some(*value),
             Wire::Unknown => {}
-            Wire::Word(word, at) => {
-                self.unknown_value(f, word, *at);
+            Wire::Word(word) => {
+                self.unknown_value(f, &word.text, word.place);
             }
             Wire::Record(outputs) => {
                 let names: Vec<String> = outputs.iter().map(|(name, _)| name.to_string()).collect();

@@ -274,11 +274,11 @@ impl<'a> Checker<'a> {
         let takes_nodes = inputs.iter().any(|input| matches!(input.ty.kind, TypeKind::Node { .. }));
         for argument in given {
             // The name of a node may be right.
-            if let Wire::Word(word, at) = &argument.wire
-                && !inputs.iter().any(|input| chooses(word, input))
-                && (!takes_nodes || self.callables_of(f.module, word).is_empty())
+            if let Wire::Word(word) = &argument.wire
+                && !inputs.iter().any(|input| chooses(&word.text, input))
+                && (!takes_nodes || self.callables_of(f.module, &word.text).is_empty())
             {
-                self.unknown_value(f, word, *at);
+                self.unknown_value(f, &word.text, word.place);
             }
         }
     }
@@ -292,8 +292,8 @@ impl<'a> Checker<'a> {
         place: Place,
     ) -> Wire {
         let first = given.first();
-        if let Some(Wire::Word(word, at)) = first.map(|given| &given.wire) {
-            return self.unknown_value(f, word, *at);
+        if let Some(Wire::Word(word)) = first.map(|given| &given.wire) {
+            return self.unknown_value(f, &word.text, word.place);
         }
         if let Some(lambda) = given.iter().find(|given| matches!(given.wire, Wire::Lambda)) {
             return self.report(f, nodes::lambda_as_value(lambda.place));
@@ -401,7 +401,7 @@ impl<'a> Checker<'a> {
     }
 
     fn no_callable(&mut self, f: &mut Frame<'a>, callee: Callee<'a>, given: &[Given<'a>]) -> Wire {
-        if given.iter().any(|given| matches!(given.wire, Wire::Word(..))) {
+        if given.iter().any(|given| matches!(given.wire, Wire::Word(_))) {
             // A word may be a choice of whatever was meant.
             let names = self.library.callable_names();
             let all: Vec<Callable> =
@@ -452,7 +452,7 @@ fn key_of(f: &Frame<'_>, wire: Wire, values: &mut Vec<Value>) -> ArgumentKey {
             values.extend(&node.captures);
             ArgumentKey::Node(node.function)
         }
-        Wire::Word(word, _) => ArgumentKey::Word(word),
+        Wire::Word(word) => ArgumentKey::Word(word.text.clone()),
         _ => ArgumentKey::None,
     }
 }
@@ -483,7 +483,7 @@ pub(super) fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, gi
             types::matrix(&input.ty).is_some_and(|size| usize::from(size) == columns.len())
         }
         (Wire::Resource(resource), None) => types::kind_of(&input.ty) == Some(resource.kind),
-        (Wire::Word(..) | Wire::None | Wire::Text(_) | Wire::List(_), None) => true,
+        (Wire::Word(_) | Wire::None | Wire::Text(_) | Wire::List(_), None) => true,
         _ => false,
     }
 }

@@ -189,8 +189,8 @@ pub fn joined_stops<'a>(head: Head<'a>, given: &[Given<'a>]) -> Option<arguments
 fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<Argument, Diagnostic> {
     let name = input.name.text.as_str();
     match wire {
-        Wire::Text(text) => Ok(Argument::Text(text.clone())),
-        Wire::Word(word, _) => Ok(Argument::Word(word.clone())),
+        Wire::Text(text) => Ok(Argument::Text(text.to_string())),
+        Wire::Word(word) => Ok(Argument::Word(word.text.clone())),
         Wire::Value(value) => match f.builder.as_constant(*value) {
             Some(constant) => Ok(Argument::Number(constant)),
             None => Err(constructors::not_known(place, name)),
@@ -247,7 +247,7 @@ fn texts(input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument,
         return Err(constructors::wrong_argument(place, input, TEXTS));
     }
     let text = |(wire, at): &(Wire, Place)| match wire {
-        Wire::Text(text) => Ok(text.clone()),
+        Wire::Text(text) => Ok(text.to_string()),
         _ => Err(constructors::wrong_argument(*at, input, TEXTS)),
     };
     items.iter().map(text).collect::<Result<_, _>>().map(Argument::Texts)

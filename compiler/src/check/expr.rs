@@ -12,23 +12,22 @@ use texgraph_grammar::syntax::{Expr, ExprKind, Name, Postfix, Span};
 impl<'a> Checker<'a> {
     /// What an expression gives. Recursion is bounded by the nesting of the text.
     pub(super) fn expr(&mut self, f: &mut Frame<'a>, e: &'a Expr) -> Wire {
-        let place = self.place(f, e.span);
-        f.builder.set_place(place);
+        f.builder.set_place(self.place(f, e.span));
         match &e.kind {
             ExprKind::Int(value) => match value.and_then(|v| i32::try_from(v).ok()) {
                 Some(int) => Wire::Value(f.builder.constant(Constant::ints(&[int]))),
-                None => self.report(f, errors::int_too_large(place)),
+                None => self.report(f, errors::int_too_large(self.place(f, e.span))),
             },
             ExprKind::Float(value) if (*value as f32).is_finite() => {
                 Wire::Value(f.builder.constant(Constant::floats(&[*value as f32])))
             }
-            ExprKind::Float(_) => self.report(f, errors::float_too_large(place)),
+            ExprKind::Float(_) => self.report(f, errors::float_too_large(self.place(f, e.span))),
             ExprKind::Bool(value) => Wire::Value(f.builder.constant(Constant::bools(&[*value]))),
             ExprKind::Color(channels) => {
                 Wire::Value(f.builder.constant(Constant::floats(&crate::color::linear(*channels))))
             }
-            ExprKind::Text(text) => Wire::Text(text.clone()),
-            ExprKind::Name(name) => self.name(f, name, place),
+            ExprKind::Text(text) => Wire::Text(text.as_str().into()),
+            ExprKind::Name(name) => self.name(f, name, e.span),
             ExprKind::Paren(inner) => self.expr(f, inner),
             ExprKind::Call(call) => self.call(f, call, e.span),
             ExprKind::Postfix { base, links } => self.postfix(f, base, links),
@@ -46,7 +45,7 @@ impl<'a> Checker<'a> {
 
     /// A name: a wire of the function, or a value of the file. One that is neither may still be a
     /// choice; who needs a value reports it.
-    fn name(&mut self, f: &mut Frame<'a>, name: &str, place: Place) -> Wire {
+    fn name(&mut self, f: &mut Frame<'a>, name: &str, span: Span) -> Wire {
         if let Some(wire) = f.lookup(name) {
             return wire;
         }
@@ -61,7 +60,7 @@ impl<'a> Checker<'a> {
         match self.global(f.module, name) {
             Some(global) => self.global_wire(f, global),
             None if name == "none" => Wire::None,
-            None => Wire::Word(name.to_owned(), place),
+            None => Wire::word(name, self.place(f, span)),
         }
     }
 
@@ -119,8 +118,8 @@ impl<'a> Checker<'a> {
         };
         while let Some(link) = links.get(next) {
             // A word that something is asked of is a name that nobody declared.
-            if let Wire::Word(word, at) = &wire {
-                wire = self.unknown_value(f, &word.clone(), *at);
+            if let Wire::Word(word) = &wire {
+                wire = self.unknown_value(f, &word.text.clone(), word.place);
             }
             let before = links[..next].last().map_or(base.span, end_of);
             let place = self.place(f, base.span.to(before));

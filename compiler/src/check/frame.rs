@@ -108,6 +108,7 @@ impl<'a> Frame<'a> {
     pub(super) fn bind_steps(&mut self) -> bool {
         let mut names = 0;
         self.bound.reserve(self.steps.len());
+        self.scopes.last_mut().into_iter().for_each(|scope| scope.reserve(self.steps.len()));
         for (i, step) in self.steps.iter().enumerate() {
             for name in step.names() {
                 names += 1;

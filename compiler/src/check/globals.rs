@@ -250,8 +250,8 @@ impl<'a> Checker<'a> {
             }
             Wire::List(items) => self.global_table(f, items),
             Wire::Unknown => Global::Unknown,
-            Wire::Word(word, at) => {
-                self.unknown_value(f, word, *at);
+            Wire::Word(word) => {
+                self.unknown_value(f, &word.text, word.place);
                 Global::Unknown
             }
             other => {

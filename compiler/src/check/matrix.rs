@@ -58,8 +58,8 @@ impl<'a> Checker<'a> {
         match wire {
             Wire::Matrix(columns) if columns.len() == usize::from(size) => Some(Rc::clone(columns)),
             Wire::Unknown => None,
-            Wire::Word(word, at) => {
-                self.unknown_value(f, word, *at);
+            Wire::Word(word) => {
+                self.unknown_value(f, &word.text, word.place);
                 None
             }
             other => {

@@ -364,7 +364,7 @@ impl<'a> Checker<'a> {
                 }))
             }
             ArgumentKey::Node(function) => self.node_input(f, input, *function),
-            ArgumentKey::Word(word) => Wire::Word(word.clone(), Place::default()),
+            ArgumentKey::Word(word) => Wire::word(word, Place::default()),
             ArgumentKey::None => Wire::None,
         }
     }

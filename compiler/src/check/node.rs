@@ -79,11 +79,11 @@ impl<'a> Checker<'a> {
             (_, Some(ExprKind::Name(name))) if !self.callables_of(f.module, name).is_empty() => {
                 Some(Source::Named(Callee { name, place, dim: None }, self.callables_of(f.module, name)))
             }
-            (Wire::Word(word, at), _) => {
+            (Wire::Word(word), _) => {
                 let own = self.modules[f.module].tree.items.iter().filter_map(super::globals::node_of);
                 let own: Vec<&str> = own.map(|node| node.name.text.as_str()).collect();
-                let near = self.near(word, own.into_iter().chain(self.library.callable_names()));
-                let error = nodes::not_a_node(*at, input, "a name that nothing has", near);
+                let near = self.near(&word.text, own.into_iter().chain(self.library.callable_names()));
+                let error = nodes::not_a_node(word.place, input, "a name that nothing has", near);
                 self.report(f, error);
                 None
             }

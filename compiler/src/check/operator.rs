@@ -209,10 +209,10 @@ impl<'a> Checker<'a> {
 /// An input of the node that is a choice: its name, the word that was chosen, and all its words.
 fn chosen<'a>(f: &mut Frame<'a>, operand: &'a Expr) -> Option<(&'a str, String, &'a [Name])> {
     let ExprKind::Name(name) = &operand.kind else { return None };
-    let Some(Wire::Word(word, _)) = f.lookup(name) else { return None };
+    let Some(Wire::Word(word)) = f.lookup(name) else { return None };
     let input = f.node?.inputs.iter().find(|input| input.name.text == *name)?;
     match &input.ty.kind {
-        TypeKind::Choice(words) => Some((name, word, words)),
+        TypeKind::Choice(words) => Some((name, word.text.clone(), words)),
         _ => None,
     }
 }

@@ -114,7 +114,7 @@ pub fn name_of(node: &Node, wire: Option<&str>) -> String {
 fn offered(builder: &mut Builder, input: &Input, declared: &Declared) -> Option<Wire> {
     let (scalar, width) = match declared {
         Declared::Vector(scalar, width) => (*scalar, *width),
-        Declared::Choice(words) => return Some(Wire::Word(words.first()?.clone(), Place::default())),
+        Declared::Choice(words) => return Some(Wire::word(words.first()?, Place::default())),
         _ => return None,
     };
     let ty = Type::Vector(scalar, width);

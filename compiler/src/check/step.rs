@@ -75,7 +75,7 @@ impl<'a> Checker<'a> {
         }
         // A bare word that reaches a wire is a name that nobody declared.
         let wire =
-            if let Wire::Word(word, place) = wire { self.unknown_value(f, &word, place) } else { wire };
+            if let Wire::Word(word) = wire { self.unknown_value(f, &word.text, word.place) } else { wire };
         let is_doubtful = f.doubtful.contains(name.text.as_str());
         f.failed |= is_doubtful;
         let wire = if is_doubtful { Wire::Unknown } else { wire };
@@ -87,7 +87,8 @@ impl<'a> Checker<'a> {
     }
 
     pub(super) fn take_apart(&mut self, f: &mut Frame<'a>, names: &'a [Name], wire: Wire, place: Place) {
-        let wire = if let Wire::Word(word, at) = wire { self.unknown_value(f, &word, at) } else { wire };
+        let wire =
+            if let Wire::Word(word) = wire { self.unknown_value(f, &word.text, word.place) } else { wire };
         let outputs = match &wire {
             Wire::Record(outputs) => Rc::clone(outputs),
             Wire::Unknown => Rc::new(Vec::new()),

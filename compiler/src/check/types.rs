@@ -235,7 +235,7 @@ pub fn describe(wire: &Wire, ty: impl Fn(crate::graph::Value) -> Type) -> String
         Wire::Node(_) | Wire::Callables(_) => "a node".to_owned(),
         Wire::Lambda => "a lambda".to_owned(),
         Wire::Resource(resource) => kind(KINDS[resource.kind].name),
-        Wire::Word(word, _) => format!("the word `{word}`"),
+        Wire::Word(word) => format!("the word `{}`", word.text),
         Wire::Text(_) => "a string".to_owned(),
         Wire::List(_) => "a list".to_owned(),
         Wire::None => "`none`".to_owned(),

@@ -9,7 +9,7 @@ use smol_str::SmolStr;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// What an expression gives.
+/// What an expression gives. Small, since there is one for every name.
 #[derive(Clone, Debug)]
 pub enum Wire {
     /// A number, vector or bool.
@@ -29,15 +29,31 @@ pub enum Wire {
     /// A lambda, before the node's type is known.
     Lambda,
     /// A bare word that names no value; fine where an input's type lists it.
-    Word(String, Place),
+    Word(Rc<BareWord>),
     /// A string.
-    Text(String),
+    Text(Rc<str>),
     /// A list with the places of its elements.
     List(Rc<Vec<(Wire, Place)>>),
     /// A resource that was not given.
     None,
     /// Wrong, and reported already; or waiting for a node to be made.
     Unknown,
+}
+
+impl Wire {
+    /// A bare word.
+    pub fn word(text: &str, place: Place) -> Wire {
+        Wire::Word(Rc::new(BareWord { text: text.to_owned(), place }))
+    }
+}
+
+/// A word that names no value.
+#[derive(Clone, Debug)]
+pub struct BareWord {
+    /// The word.
+    pub text: String,
+    /// Where it stands.
+    pub place: Place,
 }
 
 /// A resource as a function sees it: its views are values of that function.

@@ -1,30 +1,19 @@
 //! Finds a value by its operation.
 
 use super::{Operation, Value};
+use hashbrown::HashTable;
 use rustc_hash::FxHasher;
 use std::hash::{Hash, Hasher};
 
-/// An open hash table over an arena, which alone holds the operations.
+/// A hash table over an arena, which alone holds the operations. Most operations are new, which a
+/// byte each tells: on a large graph the rest of the table is seldom in the cache.
 #[derive(Default)]
-pub struct Interner {
-    /// None, or a power of two of them from 2 on, at most half of them used.
-    slots: Vec<Slot>,
-    used: usize,
-}
+pub struct Interner(HashTable<Entry>);
 
 /// The hash of an operation and its value.
-#[derive(Clone, Copy)]
-struct Slot {
+struct Entry {
     hash: u32,
     value: Value,
-}
-
-impl Slot {
-    const FREE: Slot = Slot { hash: 0, value: Value(u32::MAX) };
-
-    fn is_free(self) -> bool {
-        self.value == Slot::FREE.value
-    }
 }
 
 /// The hash of an operation that has no value yet.
@@ -34,8 +23,7 @@ pub struct Vacant(u32);
 impl Interner {
     /// With room for that many operations.
     pub fn with_capacity(operations: usize) -> Interner {
-        let slots = if operations == 0 { 0 } else { (operations * 2).next_power_of_two() };
-        Interner { slots: vec![Slot::FREE; slots], used: 0 }
+        Interner(HashTable::with_capacity(operations))
     }
 
     /// The value of an operation of the arena.
@@ -46,46 +34,19 @@ impl Interner {
         let mut hasher = FxHasher::default();
         operation.hash(&mut hasher);
         let hash = hasher.finish() as u32;
-        let mut place = hash as usize;
-        while let Some(slot) = self.slots.get(place & self.slots.len().wrapping_sub(1)) {
-            if slot.is_free() {
-                break;
-            }
-            if slot.hash == hash && arena[slot.value.0 as usize] == *operation {
-                return Ok(slot.value);
-            }
-            place += 1;
-        }
-        Err(Vacant(hash))
+        let is_it = |entry: &Entry| entry.hash == hash && arena[entry.value.0 as usize] == *operation;
+        self.0.find(widened(hash), is_it).map_or(Err(Vacant(hash)), |entry| Ok(entry.value))
     }
 
     /// Notes the value of an operation that had none.
-    pub fn insert(&mut self, vacant: Vacant, value: Value) {
-        if self.used * 2 >= self.slots.len() {
-            self.grow();
-        }
-        self.place(Slot { hash: vacant.0, value });
-        self.used += 1;
+    pub fn insert(&mut self, Vacant(hash): Vacant, value: Value) {
+        self.0.insert_unique(widened(hash), Entry { hash, value }, |entry| widened(entry.hash));
     }
+}
 
-    fn grow(&mut self) {
-        let slots = vec![Slot::FREE; (self.slots.len() * 2).max(16)];
-        for slot in std::mem::replace(&mut self.slots, slots) {
-            if !slot.is_free() {
-                self.place(slot);
-            }
-        }
-    }
-
-    /// Into the first free slot from where it belongs; there always is one.
-    fn place(&mut self, slot: Slot) {
-        let mask = self.slots.len() - 1;
-        let mut place = slot.hash as usize;
-        while !self.slots[place & mask].is_free() {
-            place += 1;
-        }
-        self.slots[place & mask] = slot;
-    }
+/// The table looks at the first and the last bits of a hash.
+fn widened(hash: u32) -> u64 {
+    u64::from(hash) << 32 | u64::from(hash)
 }
 
 #[cfg(test)]

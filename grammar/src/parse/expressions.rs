@@ -54,7 +54,11 @@ impl<'s> Builder<'s> {
                     self.forbid_chain(operator, operator_span);
                     (chain.operator, chain.operator_span) = (operator, operator_span);
                 }
-                _ => open.push(OpenChain { first: left, links: vec![], operator, operator_span }),
+                _ => {
+                    // Most chains have one.
+                    let links = Vec::with_capacity(1);
+                    open.push(OpenChain { first: left, links, operator, operator_span });
+                }
             }
         }
         Ok(open.into_iter().rev().fold(operand, |operand, chain| chain.finish(operand)))
@@ -108,10 +112,10 @@ impl<'s> Builder<'s> {
         let mut parts = self.parts_of(pair);
         let base = self.next(&mut parts, "an operand")?;
         let base = self.primary(base)?;
-        let links: Vec<Postfix> = parts.map(|link| self.link(link)).collect::<Built<_>>()?;
-        if links.is_empty() {
+        if parts.len() == 0 {
             return Ok(base);
         }
+        let links = self.each(parts, Builder::link)?;
         Ok(Expr { span, kind: ExprKind::Postfix { base: Box::new(base), links } })
     }
 
@@ -139,8 +143,9 @@ impl<'s> Builder<'s> {
     }
 
     fn arguments(&mut self, pair: Pair<'s>) -> Built<Vec<Argument>> {
-        let mut arguments: Vec<Argument> = Vec::new();
-        for part in self.parts_of(pair) {
+        let parts = self.parts_of(pair);
+        let mut arguments: Vec<Argument> = Vec::with_capacity(parts.len());
+        for part in parts {
             let argument = self.argument(part)?;
             let before = arguments.last().and_then(|before| before.name.as_ref());
             if let (None, Some(named)) = (&argument.name, before) {
@@ -173,9 +178,7 @@ impl<'s> Builder<'s> {
         let span = pair.span;
         let kind = match pair.rule {
             Rule::paren => ExprKind::Paren(Box::new(self.only_expr(pair)?)),
-            Rule::list => {
-                ExprKind::List(self.parts_of(pair).map(|item| self.expr(item)).collect::<Built<_>>()?)
-            }
+            Rule::list => ExprKind::List(self.each(self.parts_of(pair), Builder::expr)?),
             Rule::choice => self.choice(pair)?,
             Rule::fold => ExprKind::Fold(Box::new(self.fold(pair)?)),
             Rule::reference => match self.reference(pair)? {

@@ -187,7 +187,7 @@ impl<'s> Builder<'s> {
 
     pub(super) fn body(&mut self, pair: Pair<'s>) -> Built<Body> {
         let span = pair.span;
-        let statements = self.parts_of(pair).map(|part| self.statement(part)).collect::<Built<_>>()?;
+        let statements = self.each(self.parts_of(pair), Builder::statement)?;
         Ok(Body { statements, span })
     }
 

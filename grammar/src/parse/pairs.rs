@@ -46,7 +46,19 @@ impl<'s> Iterator for Parts<'s> {
         let steps = this.get(1..).unwrap_or_default();
         Some(Pair { rule: step.rule, span, source: self.source, steps })
     }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let mut rest = self.steps;
+        let mut count = 0;
+        while let Some(after) = rest.first().and_then(|step| rest.get(step.size as usize..)) {
+            rest = after;
+            count += 1;
+        }
+        (count, Some(count))
+    }
 }
+
+impl ExactSizeIterator for Parts<'_> {}
 
 impl<'s> Parts<'s> {
     /// The next child if it has this rule.
@@ -70,6 +82,19 @@ impl<'s> Builder<'s> {
     /// The next part, which the grammar promises.
     pub(super) fn next(&self, parts: &mut Parts<'s>, what: &'static str) -> Result<Pair<'s>, SyntaxError> {
         parts.next().ok_or_else(|| self.missing(what))
+    }
+
+    /// What is made of each part, in the memory that it needs and no more.
+    pub(super) fn each<T>(
+        &mut self,
+        parts: Parts<'s>,
+        make: impl Fn(&mut Self, Pair<'s>) -> Result<T, SyntaxError>,
+    ) -> Result<Vec<T>, SyntaxError> {
+        let mut made = Vec::with_capacity(parts.len());
+        for part in parts {
+            made.push(make(self, part)?);
+        }
+        Ok(made)
     }
 
     /// The first child, which the grammar promises.
