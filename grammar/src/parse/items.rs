@@ -209,15 +209,10 @@ impl<'s> Builder<'s> {
 
     fn pattern(&self, pair: Pair<'s>) -> Built<Pattern> {
         let span = pair.span;
-        let is_record = pair.text().starts_with('(');
-        let mut names = self.names(pair);
-        match names.pop() {
-            Some(name) if !is_record => Ok(Pattern::Name(name)),
-            Some(name) => {
-                names.push(name);
-                Ok(Pattern::Record(names, span))
-            }
-            None => Err(self.missing("a name")),
+        if pair.text().starts_with('(') {
+            Ok(Pattern::Record(self.names(pair), span))
+        } else {
+            Ok(Pattern::Name(self.next_name(&mut self.parts_of(pair))?))
         }
     }
 }
