@@ -5,8 +5,8 @@
 use libtest_mimic::{Arguments, Failed, Trial};
 use std::path::Path;
 use std::sync::Arc;
-use texgraph_compiler::manifest::{Format, Table};
-use texgraph_compiler::{Library, Options, Program, compile, diagnostic::render};
+use texgraph_compiler::manifest::{Format, Gradients, Table};
+use texgraph_compiler::{Library, Options, Plane, Program, compile, diagnostic::render};
 use texgraph_runtime::cpu;
 use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::picture::Picture;
@@ -34,20 +34,27 @@ fn main() {
     let arguments = Arguments::from_args();
     let required = std::env::var("TEXGRAPH_GPU").is_ok_and(|value| value == "required");
     let gpu = Gpu::new(Preference::Hardware).map(Arc::new);
-    let tests: [(&str, Test); 11] = [
+    let tests: [(&str, Test); 15] = [
         ("copies_of_one_pattern_are_the_repeated_image", copies_are_the_repeated_image),
         ("a_wrapped_pattern_is_the_repeated_image", wrapped_is_the_repeated_image),
         ("the_level_has_no_seam", the_level_has_no_seam),
         ("different_patterns_are_one_picture", different_patterns_are_one_picture),
         ("a_pattern_alone_lies_on_nothing", alone_lies_on_nothing),
+        ("anisotropic_copies_are_the_repeated_image", anisotropic_copies_are_the_repeated_image),
+        ("an_anisotropic_wrapped_pattern_is_the_repeated_image", anisotropic_wrapped_is_the_repeated_image),
+        ("an_anisotropic_pattern_alone_lies_on_nothing", anisotropic_alone_lies_on_nothing),
         ("far_tiles_become_the_mean", far_tiles_become_the_mean),
+        ("far_anisotropic_tiles_become_the_mean", far_anisotropic_tiles_become_the_mean),
         ("weighted_means_are_sums_of_means", weighted_means_are_sums),
         ("levels_are_those_of_the_filter", levels_are_those_of_the_filter),
         ("levels_count_on_anisotropy", levels_count_on_anisotropy),
         ("a_sampled_value_changes_as_it_is_drawn", sampled_values_change_as_drawn),
         ("a_ramp_is_the_mean_over_a_pixel", a_ramp_is_the_mean_over_a_pixel),
     ];
-    let mut trials = vec![Trial::test("anisotropic_samples_keep_their_gradient", keep_their_gradient)];
+    let mut trials = vec![
+        Trial::test("anisotropic_samples_keep_their_gradient", keep_their_gradient),
+        Trial::test("anisotropic_tiles_on_the_ground_are_sharper", on_the_ground_are_sharper),
+    ];
     for (name, test) in tests {
         trials.push(Trial::test(format!("cpu::{name}"), move || test(&Renderer::Cpu)));
         let gpu = gpu.clone();
@@ -74,13 +81,27 @@ fn folder() -> Result<tempfile::TempDir, Failed> {
     Ok(folder)
 }
 
+/// The same with `wide.png`: the first tile with nothing around it, four tiles a side.
+fn folder_with_wide() -> Result<tempfile::TempDir, Failed> {
+    let folder = folder()?;
+    let one = image::open(folder.path().join("one.png"))?.to_rgba8();
+    let mut wide = image::RgbaImage::new(64, 64);
+    image::imageops::replace(&mut wide, &one, 16, 16);
+    wide.save(folder.path().join("wide.png"))?;
+    Ok(folder)
+}
+
 /// A program with its tables, from a source.
 fn loaded(folder: &Path, source: &str) -> Result<(Program, Tables), Failed> {
+    loaded_with(folder, source, &Options::default())
+}
+
+fn loaded_with(folder: &Path, source: &str, options: &Options) -> Result<(Program, Tables), Failed> {
     let file = folder.join("main.tex");
     std::fs::write(&file, source)?;
     let library = Library::standard()?;
     let project = Project::new(&file, true);
-    let compiled = compile(&library, project.main(), &project, &Options::default());
+    let compiled = compile(&library, project.main(), &project, options);
     let compiled = compiled.map_err(|f| render::human(&f.sources, &f.diagnostics))?;
     let mut program = compiled.program;
     let tables = load(&mut program, &project).map_err(|d| render::human(&compiled.sources, &d))?;
@@ -220,10 +241,14 @@ fn the_level_has_no_seam(renderer: &Renderer) -> Result<(), Failed> {
         "color = tiles.tiled(cell, at, |c| virtual_index(c, 4), edges: clamp, far: vec4(0.5))",
         "color = tiles.reference(virtual_index(cell, 4), at)",
         "color = tiles.reference(0, uv, edges: wrap)",
+        "let (far, there) = tile_map(turned(uv), ivec2(1))
+         color = sharp.tiled(far, there, |c| virtual_index(c, 4), far: vec4(vec3(0.5), 1.0))",
+        "color = sharp.reference(0, turned(uv), edges: wrap)",
     ];
     for body in bodies {
         let source = format!(
-            "let tiles = patterns(\"tiles.png\", grid: ivec2(2))\n\
+            "{TURNED}\nlet tiles = patterns(\"tiles.png\", grid: ivec2(2))\n\
+             let sharp = patterns(\"tiles.png\", grid: ivec2(2), anisotropy: 8)\n\
              texture t(uv: vec2) -> (color: color) {{\n\
              let (cell, at) = tile_map(uv, ivec2(1))\n{body}\n}}"
         );
@@ -243,11 +268,7 @@ fn the_level_has_no_seam(renderer: &Renderer) -> Result<(), Failed> {
 
 /// Beyond its edges a pattern is nothing: the same as in the middle of a transparent picture.
 fn alone_lies_on_nothing(renderer: &Renderer) -> Result<(), Failed> {
-    let folder = folder()?;
-    let one = image::open(folder.path().join("one.png"))?.to_rgba8();
-    let mut wide = image::RgbaImage::new(64, 64);
-    image::imageops::replace(&mut wide, &one, 16, 16);
-    wide.save(folder.path().join("wide.png"))?;
+    let folder = folder_with_wide()?;
     let source = r#"
 let one = patterns("one.png")
 texture t(uv: vec2) -> (color: color) { color = one.reference(0, uv, edges: clear) }
@@ -262,14 +283,134 @@ texture t(uv: vec2) -> (color: color) {
     same(renderer, folder.path(), [source, other], 1.0)
 }
 
+/// A place four times as long down the picture as across, along no axis of the tiles.
+const TURNED: &str = "node turned(uv: vec2) -> (at: vec2) {
+    at = vec2(0.8 * uv.x - 2.4 * uv.y, 0.6 * uv.x + 3.2 * uv.y)
+}";
+
+/// What an anisotropic filter is to see of a picture at a place that is longer down than across.
+const TAPPED: &str = "node tapped(one: image, at: vec2) -> (color: color) {
+    let texels = at * one.size
+    let width  = max(length(dx(texels)), 1.0)
+    let count  = max(int(ceil(length(dy(texels)) / width - 0.01)), 1)
+    let taps = fold (sum = vec4(0.0)) for i in 0..count max 8 {
+        sum = sum + one.sample(at + dy(at) * ((i + 0.5) / count - 0.5), lod: log2(width))
+    }
+    color = taps / count
+}";
+
+fn anisotropic_copies_are_the_repeated_image(renderer: &Renderer) -> Result<(), Failed> {
+    let tiled = "let (cell, at) = tile_map(turned(uv), ivec2(1))\n color = one.tiled(cell, at, |c| 0)";
+    is_tapped(renderer, tiled, 0.0)
+}
+
+fn anisotropic_wrapped_is_the_repeated_image(renderer: &Renderer) -> Result<(), Failed> {
+    is_tapped(renderer, "color = one.reference(0, turned(uv), edges: wrap)", 0.0)
+}
+
+/// A pattern whose sampler is anisotropic gives the mean of taps of the repeated picture.
+fn is_tapped(renderer: &Renderer, body: &str, least_pixels: f64) -> Result<(), Failed> {
+    let source = format!(
+        "{TURNED}\nlet one = patterns(\"one.png\", anisotropy: 8)\n\
+         texture t(uv: vec2) -> (color: color) {{ {body} }}"
+    );
+    let other = format!(
+        "{TURNED}\n{TAPPED}\nlet one = image(\"one.png\")\n\
+         texture t(uv: vec2) -> (color: color) {{ color = tapped(one, turned(uv)) }}"
+    );
+    same(renderer, folder()?.path(), [&source, &other], least_pixels)
+}
+
+fn anisotropic_alone_lies_on_nothing(renderer: &Renderer) -> Result<(), Failed> {
+    let folder = folder_with_wide()?;
+    let source = format!(
+        "{TURNED}\nlet one = patterns(\"one.png\", anisotropy: 8)\n\
+         texture t(uv: vec2) -> (color: color) {{ color = one.reference(0, turned(uv), edges: clear) }}"
+    );
+    let other = format!(
+        "{TURNED}\n{TAPPED}\nlet wide = image(\"wide.png\", wrap: clamp)\n\
+         texture t(uv: vec2) -> (color: color) {{ color = tapped(wide, turned(uv) * 0.25 + 0.25) }}"
+    );
+    same(renderer, folder.path(), [&source, &other], 1.0)
+}
+
+/// How much nearer to the truth, in dB, tiles on the ground are with an anisotropy of 8.
+const SHARPER: f64 = 3.5;
+
+/// Tiles on the ground against a picture sixteen times as fine, of the finest level alone.
+fn on_the_ground_are_sharper() -> Result<(), Failed> {
+    let tiles = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tiles/grass.png");
+    let bodies = [
+        "let (cell, at) = tile_map(uv, ivec2(1))\n color = grass.tiled(cell, at, |c| virtual_index(c, 16))",
+        "color = grass.reference(3, uv, edges: wrap)",
+    ];
+    for body in bodies {
+        let seen = |anisotropy: u32, gradients: Gradients, side: u32| {
+            let source = format!(
+                "let grass = patterns(\"{}\", grid: ivec2(4), anisotropy: {anisotropy})\n\
+                 texture t(uv: vec2) -> (color: color) {{ {body} }}",
+                tiles.display()
+            );
+            let plane = Some(Plane { repeat: 2.0, aspect: 1.0 });
+            let folder = tempfile::tempdir()?;
+            let made =
+                loaded_with(folder.path(), &source, &Options { plane, gradients, ..Options::default() })?;
+            // Below the horizon and some pixels.
+            let request = Request { region: [0.0, 0.3, 1.0, 1.0], ..Request::new([side; 2]) };
+            Ok::<Picture, Failed>(draw(&Renderer::Cpu, &made, &[request])?.remove(0))
+        };
+        let truth = averaged(&seen(1, Gradients::None, 16 * SIDE)?, 16);
+        let error = |anisotropy| {
+            Ok::<f64, Failed>(squared_error(&seen(anisotropy, Gradients::Derive, SIDE)?, &truth))
+        };
+        let (round, long) = (error(1)?, error(8)?);
+        let sharper = 10.0 * (round / long).log10();
+        println!("{sharper:.2} dB: {body}");
+        if sharper < SHARPER {
+            return Err(format!("{body}: only {sharper:.2} dB").into());
+        }
+    }
+    Ok(())
+}
+
+/// The means of squares of so many pixels a side.
+fn averaged(picture: &Picture, side: usize) -> Picture {
+    let size = picture.size.map(|length| length / side as u32);
+    let width = picture.size[0] as usize;
+    let mean = |place: usize| {
+        let corner = place / size[0] as usize * side * width + place % size[0] as usize * side;
+        let rows = (0..side).flat_map(|row| &picture.pixels[corner + row * width..][..side]);
+        let sum = rows.fold([0.0_f64; 4], |sum, pixel| [0, 1, 2, 3].map(|i| sum[i] + f64::from(pixel[i])));
+        sum.map(|sum| (sum / (side * side) as f64) as f32)
+    };
+    let pixels = (0..(size[0] * size[1]) as usize).map(mean).collect();
+    Picture { size, pixels, ..picture.clone() }
+}
+
+/// The mean square of the difference of channels.
+fn squared_error(one: &Picture, two: &Picture) -> f64 {
+    let channels = one.pixels.iter().flatten().zip(two.pixels.iter().flatten());
+    let sum: f64 = channels.map(|(a, b)| f64::from(a - b).powi(2)).sum();
+    sum / (one.pixels.len() * 4) as f64
+}
+
+fn far_tiles_become_the_mean(renderer: &Renderer) -> Result<(), Failed> {
+    become_the_mean(renderer, "", "ivec2(1)")
+}
+
+/// Where a pixel covers eight tiles one way and one the other.
+fn far_anisotropic_tiles_become_the_mean(renderer: &Renderer) -> Result<(), Failed> {
+    become_the_mean(renderer, ", anisotropy: 8", "ivec2(1, 8)")
+}
+
 /// From two tiles a pixel on every pixel is the mean of the patterns, and the mean colour of the
 /// picture does not drift on the way there.
-fn far_tiles_become_the_mean(renderer: &Renderer) -> Result<(), Failed> {
+fn become_the_mean(renderer: &Renderer, anisotropy: &str, cells: &str) -> Result<(), Failed> {
     let folder = folder()?;
-    let head = "let tiles = patterns(\"tiles.png\", grid: ivec2(2))\n";
+    let head = format!("let tiles = patterns(\"tiles.png\", grid: ivec2(2){anisotropy})\n");
     let source = format!(
         "{head}texture t(uv: vec2) -> (color: color) {{\n\
-         let (cell, at) = tile_map(uv, ivec2(1))\n\
+         let (cell, at) = tile_map(uv, {cells})\n\
          color = tiles.tiled(cell, at, |c| virtual_index(c, tiles.count))\n}}"
     );
     let means = format!("{head}texture t(uv: vec2) -> (color: color) {{ color = tiles.average }}");

@@ -20,7 +20,10 @@ use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
 
-const GRAPHS: [&str; 7] = ["tiles", "scattered", "nested", "indirection", "priority", "choice", "baked"];
+const GRAPHS: [&str; 8] =
+    ["tiles", ANISOTROPIC, "scattered", "nested", "indirection", "priority", "choice", "baked"];
+/// The tiles, filtered by up to eight taps.
+const ANISOTROPIC: &str = "tiles_anisotropic";
 const SIDE: u32 = 96;
 /// Sides of one cell in pixels, on the plane along the lower edge.
 const PIXELS_A_CELL: [f64; 10] = [512.0, 130.0, 47.3, 13.7, 8.0, 5.3, 3.1, 1.4, 0.77, 0.1];
@@ -74,6 +77,13 @@ fn a_seam_is_seen() -> Result<(), Failed> {
 /// rightly differ in level, so they get one scale;
 /// and a picture that fades in far away has levels of its own, so it is left out.
 fn source(graph: &str) -> Result<String, Failed> {
+    if graph == ANISOTROPIC {
+        let round = source("tiles")?;
+        let width = "max(min(length(dx(uv)), length(dy(uv))), footprint(uv) / 8.0)";
+        return Ok(round
+            .replace("ivec2(4, 4))", "ivec2(4, 4), anisotropy: 8)")
+            .replace("footprint(uv)", width));
+    }
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let source = std::fs::read_to_string(root.join(format!("runtime/benches/quality/graphs/{graph}.tex")))?;
     Ok(source

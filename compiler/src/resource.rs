@@ -242,6 +242,7 @@ pub static KINDS: &[Kind] = &[
             Field { name: "average", kind: FieldKind::Texel("means", "count") },
             Field { name: "count", kind: FieldKind::Constant },
             Field { name: "linear", kind: FieldKind::Constant },
+            Field { name: "taps", kind: FieldKind::Constant },
         ],
         view: None,
         make: make_patterns,
@@ -361,8 +362,10 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
         constants: vec![
             ("count", Constant::ints(&[count as i32])),
             ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
+            ("taps", Constant::ints(&[i32::from(sampler.anisotropy)])),
         ],
-        sampler: Some(sampler),
+        // The library's nodes take the taps, so that they reach other patterns.
+        sampler: Some(SamplerState { anisotropy: 1, ..sampler }),
     })
 }
 
