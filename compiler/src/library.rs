@@ -13,6 +13,9 @@ use texgraph_grammar::syntax::{ItemKind, Signature};
 /// The files, one per technique.
 const FILES: &[(&str, &str)] = &[
     ("std/tiling.tex", include_str!("../std/tiling.tex")),
+    ("std/transition.tex", include_str!("../std/transition.tex")),
+    ("std/animation.tex", include_str!("../std/animation.tex")),
+    ("std/splat.tex", include_str!("../std/splat.tex")),
     ("std/resources.tex", include_str!("../std/resources.tex")),
     ("std/noise.tex", include_str!("../std/noise.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),

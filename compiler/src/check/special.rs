@@ -5,7 +5,7 @@ use super::types;
 use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, types as errors, unsupported};
-use crate::graph::{Axis, Operation, Sampled, Scalar, Type, Value};
+use crate::graph::{Axis, Constant, Operation, Sampled, Scalar, Type, Value};
 use crate::resource::LATER;
 use texgraph_grammar::syntax::Call;
 
@@ -29,6 +29,7 @@ impl<'a> Checker<'a> {
             "dy" => Some(self.derivative(f, name, Axis::Y, Sampled::Changing, given, place)),
             "_dx" if is_library => Some(self.derivative(f, name, Axis::X, Sampled::Constant, given, place)),
             "_dy" if is_library => Some(self.derivative(f, name, Axis::Y, Sampled::Constant, given, place)),
+            "_demand" if is_library => Some(self.demand(f, given, place)),
             "mat2" | "mat3" => Some(self.matrix(f, if name == "mat2" { 2 } else { 3 }, given, place)),
             "fold_sprites" => Some(self.not_yet(f, place, name)),
             _ if LATER.contains(&name) => Some(self.not_yet(f, place, name)),
@@ -44,13 +45,30 @@ impl<'a> Checker<'a> {
         match given {
             [one] => {
                 let holds = !matches!(one.wire, Wire::None);
-                Wire::Value(f.builder.constant(crate::graph::Constant::bools(&[holds])))
+                Wire::Value(f.builder.constant(Constant::bools(&[holds])))
             }
             [] => self.report(f, sentences::missing_argument(place, "given", "resource", "resource")),
             [_, second, ..] => {
                 self.report(f, sentences::too_many_arguments(second.place, "given", &["resource"]))
             }
         }
+    }
+
+    /// `_demand(holds, value, "what is wrong", "what to do")`: the value, if the condition does not
+    /// fail when compiling.
+    fn demand(&mut self, f: &mut Frame<'a>, given: &[Given<'a>], place: Place) -> Wire {
+        let wires: Vec<&Wire> = given.iter().map(|given| &given.wire).collect();
+        let [Wire::Value(holds), value, Wire::Text(wrong), Wire::Text(mend)] = wires.as_slice() else {
+            return self.report(f, sentences::missing_argument(place, "_demand", "mend", "a string"));
+        };
+        let fails = f.builder.as_constant(*holds) == Some(Constant::bools(&[false]));
+        if !fails {
+            return (*value).clone();
+        }
+        let node = f.node.map_or("", |node| node.name.text.as_str());
+        self.diagnostics.push(sentences::demand(f.caller.unwrap_or(place), node, wrong, mend));
+        f.failed = true;
+        Wire::Unknown
     }
 
     fn derivative(

@@ -74,3 +74,9 @@ pub fn bad_receiver(place: Place, name: &str, found: &str, accepted: &[String]) 
     Diagnostic::new("E0215", place, format!("no `{name}` takes {found} first"), format!("given {found}"))
         .help(format!("`{name}` is for {}", accepted.join(", ")))
 }
+
+/// Arguments that a node of the library can do nothing with.
+pub fn demand(call: Place, node: &str, wrong: &str, mend: &str) -> Diagnostic {
+    let message = format!("`{node}` can't be called like this: {wrong}");
+    Diagnostic::new("E0233", call, message, "called here").help(mend)
+}

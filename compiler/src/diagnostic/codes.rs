@@ -65,6 +65,7 @@ pub const PAGES: &[(&str, &str)] = &[
     ("E0230", include_str!("pages/E0230.md")),
     ("E0231", include_str!("pages/E0231.md")),
     ("E0232", include_str!("pages/E0232.md")),
+    ("E0233", include_str!("pages/E0233.md")),
     ("E0301", include_str!("pages/E0301.md")),
     ("E0302", include_str!("pages/E0302.md")),
     ("E0303", include_str!("pages/E0303.md")),
