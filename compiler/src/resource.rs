@@ -5,8 +5,10 @@
 //! bytes.
 
 use crate::diagnostic::{Diagnostic, Place, constructors};
-use crate::graph::{Constant, FunctionId, Texel, View, ViewDimension};
+use crate::graph::{Constant, FunctionId, Scalar, Texel, View, ViewDimension};
 use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, Stop, Wrap};
+
+mod probability;
 
 /// A resource of a program: one constructor call.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,8 +43,8 @@ pub struct Kind {
     /// The constructor's and the type's name.
     pub name: &'static str,
     /// What the constructor takes. Besides the language's types: `text`, `texts` (one string or a
-    /// list of them), `cells` (a string or rows of ints) and `stops` (lists of a place and a colour,
-    /// any number of them one after the other).
+    /// list of them), `cells` (a string or rows of ints), `numbers` (a list of them) and `stops`
+    /// (lists of a place and a colour, any number of them one after the other).
     pub constructor: &'static str,
     /// One line for the reference.
     pub doc: &'static str,
@@ -127,12 +129,16 @@ pub enum Argument {
     Rows(Vec<Vec<i32>>),
     /// Stops of a ramp.
     Stops(Vec<Stop>),
+    /// A list of numbers, with where each stands.
+    Numbers(Vec<(Constant, Place)>),
     /// A number.
     Number(Constant),
     /// A bare word.
     Word(String),
     /// A node.
     Node,
+    /// What was not given and has no default.
+    Absent,
 }
 
 impl Arguments {
@@ -155,6 +161,22 @@ impl Arguments {
         match self.get(name) {
             Some((Argument::Number(c), _)) => c.int(0),
             _ => 0,
+        }
+    }
+
+    /// A float, or an int as one.
+    fn float(&self, name: &str) -> f32 {
+        match self.get(name) {
+            Some((Argument::Number(c), _)) if c.scalar() == Scalar::Float => c.float(0),
+            _ => self.int(name) as f32,
+        }
+    }
+
+    /// A list of numbers, with where each stands; none where none was given.
+    fn numbers(&self, name: &str) -> Option<&[(Constant, Place)]> {
+        match self.get(name) {
+            Some((Argument::Numbers(numbers), _)) => Some(numbers),
+            _ => None,
         }
     }
 
@@ -261,6 +283,22 @@ pub static KINDS: &[Kind] = &[
         make: make_permutation,
     },
     Kind {
+        name: "probability",
+        constructor: "(numbers: numbers = none, weights: numbers = none, size: int = 0, \
+                      blank: float = 0.0) -> probability",
+        doc: "A list of pattern numbers, each as often as it is probable; -1 is the blank pattern.",
+        gives: None,
+        fields: &[
+            Field { name: "table", kind: FieldKind::Row },
+            Field { name: "size", kind: FieldKind::Constant },
+            Field { name: "least", kind: FieldKind::Constant },
+            Field { name: "reach", kind: FieldKind::Constant },
+            Field { name: "row", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: probability::make,
+    },
+    Kind {
         name: "indices",
         constructor: "(cells: cells, levels: int = 256) -> indices",
         doc: "An integer map, which wraps.",
@@ -306,7 +344,7 @@ pub fn made_by(row: usize) -> usize {
 
 /// Kinds of the language that are not built yet.
 pub const LATER: &[&str] =
-    &["images", "volume", "probability", "materials", "exemplar", "sprites", "positions", "pixel_map"];
+    &["images", "volume", "materials", "exemplar", "sprites", "positions", "pixel_map"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(a.wrap())?;

@@ -334,3 +334,20 @@ fn small_tables_share_a_texture_a_row_each() {
     assert_eq!(all[64..], first[..]);
     assert_eq!(codes(folder.path(), vec![Recipe::Tables { rows: vec![0] }]), ["E0551"]);
 }
+
+#[test]
+fn a_probability_holds_its_list_and_how_often_each_number_stands_in_it() {
+    let folder = folder();
+    let recipes = vec![Recipe::Probability { numbers: vec![5, -1, 0, 5] }, Recipe::Tables { rows: vec![0] }];
+    let (manifest, tables) = load_recipes(folder.path(), recipes).expect("they load");
+    let shared = manifest.resources[1].textures[0].table.as_ref().expect("laid out");
+    assert_eq!((shared.width, shared.height), (6, 1));
+    let texels = integers(tables.get(1, "table").expect("made"));
+    let channel = |i: usize| texels.iter().skip(i).step_by(4).copied().collect::<Vec<_>>();
+    assert_eq!(channel(0), [5, -1, 0, 5, 5, -1]);
+    assert_eq!(channel(1), [1, 0, 0, 0, 0, 2]);
+    for numbers in [vec![], vec![256], vec![-2], vec![0; 4097]] {
+        let refused = vec![Recipe::Probability { numbers }, Recipe::Tables { rows: vec![0] }];
+        assert_eq!(codes(folder.path(), refused), ["E0551"]);
+    }
+}

@@ -196,6 +196,8 @@ fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<A
             None => Err(constructors::not_known(place, name)),
         },
         Wire::Node(_) => Ok(Argument::Node),
+        Wire::None => Ok(Argument::Absent),
+        Wire::List(items) if is_named(input, "numbers") => numbers(f, name, items),
         Wire::List(items) if is_named(input, "texts") => texts(name, items, place),
         Wire::List(items) if is_named(input, STOPS) => {
             let stops = items.iter().map(|(wire, at)| stop(f, name, wire, *at));
@@ -239,6 +241,7 @@ fn stop(f: &Frame<'_>, input: &str, wire: &Wire, place: Place) -> Result<Stop, D
 }
 
 const TEXTS: &str = "a string, or a list of strings";
+const NUMBERS: &str = "a list of numbers such as `[3, 1, 1]`";
 const ROWS: &str = "a string, or rows of ints such as `[[0, 1], [1, 0]]`";
 
 /// A list of strings.
@@ -251,6 +254,19 @@ fn texts(input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument,
         _ => Err(constructors::wrong_argument(*at, input, TEXTS)),
     };
     items.iter().map(text).collect::<Result<_, _>>().map(Argument::Texts)
+}
+
+/// A list of numbers.
+fn numbers(f: &Frame<'_>, input: &str, items: &[(Wire, Place)]) -> Result<Argument, Diagnostic> {
+    let number = |(wire, at): &(Wire, Place)| match wire {
+        Wire::Value(value) => match f.builder.as_constant(*value) {
+            Some(c) if c.width() == 1 && c.scalar() != Scalar::Bool => Ok((c, *at)),
+            Some(_) => Err(constructors::wrong_argument(*at, input, NUMBERS)),
+            None => Err(constructors::not_known(*at, input)),
+        },
+        _ => Err(constructors::wrong_argument(*at, input, NUMBERS)),
+    };
+    items.iter().map(number).collect::<Result<_, _>>().map(Argument::Numbers)
 }
 
 /// Rows of ints.

@@ -34,6 +34,8 @@ pub enum Declared {
     Cells,
     /// Constructors only: lists of a place and a colour, one after the other.
     Stops,
+    /// Constructors only: a list of numbers, or nothing.
+    Numbers,
 }
 
 /// What a node that is passed to another must take and give.
@@ -164,6 +166,7 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
         "texts" => Ok(Declared::Texts),
         "cells" => Ok(Declared::Cells),
         "stops" => Ok(Declared::Stops),
+        "numbers" => Ok(Declared::Numbers),
         "texel" => Ok(Declared::Texel),
         "mat2" => Ok(Declared::Matrix(2)),
         "mat3" => Ok(Declared::Matrix(3)),

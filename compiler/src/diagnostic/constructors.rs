@@ -88,3 +88,57 @@ pub fn anisotropy_of_nearest(place: Place) -> Diagnostic {
     Diagnostic::new("E0556", place, "with `filter: nearest` there is no anisotropy", "only 1 is possible")
         .help("leave `anisotropy:` or `filter:` out")
 }
+
+/// A probability of neither a list nor weights, or of both.
+pub fn list_or_weights(place: Place, both: bool) -> Diagnostic {
+    let message = if both {
+        "a probability is a list of numbers or has weights, not both"
+    } else {
+        "a probability needs a list of numbers, or weights"
+    };
+    Diagnostic::new("E0557", place, message, "this call")
+        .help("write `probability([0, 0, 0, 1])`, or `probability(weights: [3, 1], size: 64)`")
+}
+
+/// An empty list of pattern numbers, or weights of which none is above 0.
+pub fn nothing_probable(place: Place) -> Diagnostic {
+    Diagnostic::new("E0557", place, "no pattern is probable", "at least one number above 0 is needed")
+}
+
+/// A weight below 0.
+pub fn negative_weight(place: Place) -> Diagnostic {
+    Diagnostic::new("E0557", place, "a weight is below 0", "as often as this nothing can be")
+        .help("a pattern of weight 0 is never chosen")
+}
+
+/// A list of its own length that is given another, or the number of a pattern that is no int.
+pub fn not_a_list_of_patterns(place: Place) -> Diagnostic {
+    Diagnostic::new("E0557", place, "the list holds numbers of patterns, which are ints", "this is a float")
+        .help("for weights, write `weights: [0.5, 0.5]`")
+}
+
+/// A size beside a list.
+pub fn size_of_a_list(place: Place, entries: usize) -> Diagnostic {
+    Diagnostic::new(
+        "E0557",
+        place,
+        format!("the list has {entries} entries, and that is its size"),
+        "not chosen here",
+    )
+    .help("leave `size:` and `blank:` out; they say how weights are rounded")
+}
+
+/// A weight that no entry of the list is left for.
+pub fn list_too_short(place: Place, size: u32, least: u32) -> Diagnostic {
+    let help = match least {
+        0 => "drop the pattern, or bring the weights nearer together".to_owned(),
+        least => format!("from `size: {least}` on every weight has an entry"),
+    };
+    Diagnostic::new(
+        "E0557",
+        place,
+        format!("a list of {size} entries has none for this weight"),
+        "the pattern would never be chosen",
+    )
+    .help(help)
+}

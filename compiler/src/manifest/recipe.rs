@@ -47,6 +47,13 @@ pub enum Recipe {
         /// Chooses the permutations.
         seed: i32,
     },
+    /// A list of pattern numbers, each as often as it is probable. A row of the program's
+    /// [`Recipe::Tables`]: entry i holds number i (the list wraps) and how often the number i stands
+    /// in the list.
+    Probability {
+        /// The list, 1 to 4096 numbers from -1, the blank pattern, to 255.
+        numbers: Vec<i32>,
+    },
     /// An integer map. Field `map`.
     Indices {
         /// Where the integers come from.
@@ -58,7 +65,7 @@ pub enum Recipe {
     /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
     /// the r-th of these resources; the width is that of the longest.
     Tables {
-        /// Indices of resources: permutations.
+        /// Indices of resources: permutations, probabilities.
         rows: Vec<u32>,
     },
     /// A ramp of colours, filtered. Field `colors`: 256 texels across from the first stop to the last,

@@ -6,7 +6,7 @@
 use crate::graph::bounds::Bounds;
 use crate::graph::{Constant, Function, Operation, Scalar, Value};
 use crate::intrinsic::{
-    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, Intrinsic, MAXIMUM_INT, MINIMUM_INT, MULTIPLY,
+    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, Intrinsic, LESS_INT, MAXIMUM_INT, MINIMUM_INT, MULTIPLY,
     MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE, SUBTRACT, SUBTRACT_INT,
 };
 use smallvec::SmallVec;
@@ -97,6 +97,7 @@ fn identity(function: &Function, intrinsic: Intrinsic, arguments: &[Value]) -> O
         OR if is(1, 0) || is(0, 1) => keep(0),
         CHOOSE | CHOOSE_INT => choose(function, arguments),
         MINIMUM_INT | MAXIMUM_INT => clamped(function, intrinsic, arguments),
+        LESS_INT => below(function, arguments),
         _ => None,
     }
 }
@@ -119,6 +120,14 @@ fn clamped(function: &Function, intrinsic: Intrinsic, arguments: &[Value]) -> Op
         if intrinsic == MINIMUM_INT { bounds.high <= bound } else { bounds.low >= bound }
     });
     never_passes.then_some(Folded::Value(value))
+}
+
+/// Whether an int is below another, where the bounds of both tell.
+fn below(function: &Function, arguments: &[Value]) -> Option<Folded> {
+    let &[a, b] = arguments else { return None };
+    let (a, b) = (Bounds::within(function, a, 0), Bounds::within(function, b, 0));
+    let known = if a.high < b.low { Some(true) } else { (a.low >= b.high).then_some(false) };
+    known.map(|holds| Folded::Operation(Operation::Constant(Constant::bools(&[holds]))))
 }
 
 fn compose(function: &Function, parts: &[Value]) -> Option<Folded> {

@@ -10,6 +10,7 @@ mod image;
 mod indices;
 mod patterns;
 mod permutation;
+mod probability;
 pub(crate) mod pyramid;
 mod ramp;
 pub(crate) mod table;
@@ -100,6 +101,8 @@ fn make(
         Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
         Recipe::Patterns { paths, grid, encoding } => patterns::make(project, place, paths, *grid, *encoding),
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
+        // A row of the shared tables, and nothing of its own.
+        Recipe::Probability { .. } => Ok(Vec::new()),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
         Recipe::Tables { rows } => tables::make(place, rows, all),

@@ -1,6 +1,6 @@
 //! Small tables that share one texture, a row each. Field `table`.
 
-use super::permutation;
+use super::{permutation, probability};
 use super::table::Made;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
 use texgraph_compiler::manifest::{Format, Recipe, Resource};
@@ -12,6 +12,7 @@ use texgraph_compiler::manifest::{Format, Recipe, Resource};
 pub fn make(place: Place, rows: &[u32], all: &[Resource]) -> Result<Vec<Made>, Vec<Diagnostic>> {
     let entries = rows.iter().map(|row| match all.get(*row as usize).map(|resource| &resource.recipe) {
         Some(Recipe::Permutation { size, seed }) => permutation::entries(place, *size, *seed),
+        Some(Recipe::Probability { numbers }) => probability::entries(place, numbers),
         _ => {
             let message = format!("resource {row} is no small table");
             Err(vec![resources::no_table(place, message, "a row of the shared tables")])
