@@ -17,6 +17,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/animation.tex", include_str!("../std/animation.tex")),
     ("std/splat.tex", include_str!("../std/splat.tex")),
     ("std/resources.tex", include_str!("../std/resources.tex")),
+    ("std/distribution.tex", include_str!("../std/distribution.tex")),
     ("std/noise.tex", include_str!("../std/noise.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),

@@ -6,8 +6,8 @@
 use crate::graph::bounds::Bounds;
 use crate::graph::{Constant, Function, Operation, Scalar, Value};
 use crate::intrinsic::{
-    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, Intrinsic, LESS_INT, MAXIMUM_INT, MINIMUM_INT, MULTIPLY,
-    MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE, SUBTRACT, SUBTRACT_INT,
+    ADD, ADD_INT, AND, CHOOSE, CHOOSE_INT, DIVIDE, FLOOR, Intrinsic, LESS_INT, MAXIMUM_INT, MINIMUM_INT,
+    MULTIPLY, MULTIPLY_INT, NEGATE, OR, RAW_DIVIDE, SUBTRACT, SUBTRACT_INT,
 };
 use smallvec::SmallVec;
 

@@ -72,7 +72,10 @@ fn weighed(a: &Arguments, given: &[(Constant, Place)]) -> Result<Vec<i32>, Diagn
         return Err(constructors::list_too_short(place, size, least_size(&weights, size)));
     }
     let patterns = (0..given.len() as i32).chain([BLANK]);
-    Ok(patterns.zip(counts).flat_map(|(pattern, count)| std::iter::repeat_n(pattern, count as usize)).collect())
+    Ok(patterns
+        .zip(counts)
+        .flat_map(|(pattern, count)| std::iter::repeat_n(pattern, count as usize))
+        .collect())
 }
 
 fn weight(number: &Constant) -> f64 {

@@ -1,7 +1,7 @@
 //! Small tables that share one texture, a row each. Field `table`.
 
-use super::{permutation, probability};
 use super::table::Made;
+use super::{permutation, probability};
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
 use texgraph_compiler::manifest::{Format, Recipe, Resource};
 

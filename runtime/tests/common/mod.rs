@@ -78,7 +78,9 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
     let (field, view, sample) = match &recipe {
         Recipe::Image { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
         Recipe::Patterns { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
-        Recipe::Permutation { .. } | Recipe::Probability { .. } => ("table", ViewDimension::D2, SampleKind::Int),
+        Recipe::Permutation { .. } | Recipe::Probability { .. } => {
+            ("table", ViewDimension::D2, SampleKind::Int)
+        }
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
         Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),

@@ -1,0 +1,195 @@
+//! Probabilities, the blank pattern, dithering and areas (Lefebvre & Neyret 2003, §3.2).
+
+use crate::support::{Drawing, GRASS, deviations};
+
+/// Cells along a side of what is counted.
+const SIDE: u32 = 512;
+/// One count in a million lies farther off.
+const FAR: f64 = 4.9;
+
+fn count(pixels: &[[f32; 4]], wanted: impl Fn(&[f32; 4]) -> bool) -> usize {
+    pixels.iter().filter(|pixel| wanted(pixel)).count()
+}
+
+#[test]
+fn patterns_are_drawn_in_proportion_to_their_weights() {
+    let drawing = Drawing::of(
+        "let lawn = probability(weights: [8, 4, 2.5, 0.5], blank: 1, size: 64)\n\
+         texture t(uv: vec2) -> (pick: float) {\n\
+             pick = float(lawn.at(virtual_index(ifloor(uv * 512.0), lawn.size)))\n\
+         }",
+    );
+    let pixels = drawing.cells(SIDE);
+    for (pick, entries) in [(0.0, 32), (1.0, 16), (2.0, 10), (3.0, 2), (-1.0, 4)] {
+        let found = count(&pixels, |pixel| pixel[0] == pick);
+        let off = deviations(found, pixels.len(), f64::from(entries) / 64.0);
+        assert!(off < FAR, "{pick}: {found} of {}", pixels.len());
+    }
+    assert_eq!((drawing.worst().fetches, drawing.worst().samples), (1.0, 0.0));
+}
+
+#[test]
+fn of_the_blank_pattern_nothing_is_drawn_and_nothing_fetched() {
+    for call in [
+        "grass.reference(-1, uv)",
+        "grass.reference(-1, uv * 3.0, edges: wrap)",
+        "grass.reference(-1, uv, edges: clear)",
+        "grass.tiled(ifloor(uv), fract(uv), |c| -1, far: vec4(0.0))",
+        "grass.tiled(ifloor(uv), fract(uv), |c| -1, edges: clamp, far: vec4(0.0))",
+        "grass.average(-1)",
+    ] {
+        let drawing =
+            Drawing::of(&format!("{GRASS}texture t(uv: vec2) -> (color: color) {{ color = {call} }}"));
+        assert!(drawing.cells(16).iter().all(|pixel| *pixel == [0.0; 4]), "{call}");
+        assert_eq!(drawing.worst().reads, 0.0, "{call}");
+    }
+}
+
+#[test]
+fn a_list_without_the_blank_pattern_pays_nothing_for_it() {
+    let list = |numbers: &str| {
+        let text = format!(
+            "{GRASS}let lawn = probability({numbers})\n\
+             texture t(uv: vec2) -> (color: color) {{\n\
+                 color = grass.reference(lawn.at(ifloor(uv.x)), fract(uv))\n\
+             }}"
+        );
+        Drawing::of(&text).worst().arithmetic.compare
+    };
+    assert!(list("[0, 3, 15]") < list("[0, 3, -1]"));
+}
+
+#[test]
+fn the_mean_of_a_probability_is_that_of_what_it_draws() {
+    let text = |color: &str| {
+        Drawing::of(&format!(
+            "{GRASS}let lawn = probability(weights: [8, 4, 2, 1], blank: 5, size: 64)\n\
+             texture t(uv: vec2) -> (color: color) {{ color = {color} }}"
+        ))
+    };
+    let drawn = text("grass.average(lawn.at(virtual_index(ifloor(uv * 512.0), 64)))").cells(SIDE);
+    let mean = text("lawn.average(grass)").cells(1)[0];
+    for (i, mean) in mean.iter().enumerate() {
+        let found = drawn.iter().map(|pixel| f64::from(pixel[i])).sum::<f64>() / drawn.len() as f64;
+        assert!((found - f64::from(*mean)).abs() < 0.004, "{found} {mean}");
+    }
+}
+
+#[test]
+fn dithering_takes_the_second_value_in_proportion_along_the_blend() {
+    let drawing = Drawing::of(
+        "texture t(uv: vec2) -> (second: vec2) { second = vec2(dither(ifloor(uv * 512.0), uv)) }",
+    );
+    let (pixels, side) = (drawing.cells(SIDE), SIDE as usize);
+    for band in 0..32 {
+        let width = side / 32;
+        let b = (band as f64 + 0.5) / 32.0;
+        let across =
+            (0..side * width).filter(|i| pixels[i / width * side + band * width + i % width][0] > 0.0);
+        let down = (0..side * width).filter(|i| pixels[band * width * side + i][1] > 0.0);
+        for found in [across.count(), down.count()] {
+            assert!(deviations(found, side * width, b) < FAR, "{b}: {found} of {}", side * width);
+        }
+    }
+}
+
+/// Axes draw apart, and apart from the pick of a tile: chi-square over all combinations.
+#[test]
+fn draws_of_a_cell_are_independent() {
+    let drawing = Drawing::of(
+        "texture t(uv: vec2) -> (drawn: float) {\n\
+             let cell  = ifloor(uv * 512.0)\n\
+             let plane = dither(cell, vec2(0.5))\n\
+             let depth = dither(ivec3(cell, 0), vec3(0.5)).z\n\
+             drawn = float(virtual_index(cell, 4) + 4 * plane.x + 8 * plane.y + 16 * depth)\n\
+         }",
+    );
+    let pixels = drawing.cells(SIDE);
+    let expected = pixels.len() as f64 / 32.0;
+    let square = |i: u8| (count(&pixels, |p| p[0] == f32::from(i)) as f64 - expected).powi(2) / expected;
+    let sum: f64 = (0..32).map(square).sum();
+    // 31 degrees of freedom: one in ten thousand is above.
+    assert!(sum < 71.0, "chi-square {sum}");
+}
+
+/// The areas map of the tests below, its sides not alike.
+const AREAS: [[f32; 3]; 4] = [[0.0, 1.0, 1.0], [2.0, 0.0, 3.0], [1.0, 1.0, 2.0], [0.0, 3.0, 3.0]];
+const MAP: &str = "let areas = indices([[0, 1, 1], [2, 0, 3], [1, 1, 2], [0, 3, 3]])\n";
+
+/// Where a cell of `n` lies among `a` areas: the first of the two nearest, and the part of the second.
+fn among(cell: u32, n: u32, a: u32, softness: f64) -> (i64, f64) {
+    let x = (f64::from(cell) + 0.5) * f64::from(a) / f64::from(n) - 0.5;
+    let between = x - x.floor();
+    let b = match softness {
+        0.0 => f64::from(u8::from(between >= 0.5)),
+        softness => ((between - 0.5) / softness + 0.5).clamp(0.0, 1.0),
+    };
+    (x.floor() as i64, b)
+}
+
+/// The probability of an area at a cell, by the formula.
+fn probability(cell: [u32; 2], n: u32, softness: f64, area: f32) -> f64 {
+    let ((i, u), (j, v)) = (among(cell[0], n, 3, softness), among(cell[1], n, 4, softness));
+    let corners =
+        [(0, 0, (1.0 - u) * (1.0 - v)), (1, 0, u * (1.0 - v)), (0, 1, (1.0 - u) * v), (1, 1, u * v)];
+    let holds = |(x, y): (i64, i64)| AREAS[(j + y).rem_euclid(4) as usize][(i + x).rem_euclid(3) as usize];
+    corners.iter().filter(|(x, y, _)| holds((*x, *y)) == area).map(|(.., share)| share).sum()
+}
+
+/// For sides that the map divides and sides that it does not.
+#[test]
+fn areas_are_dithered_by_the_formula() {
+    for (n, softness) in [(384, 1.0), (500, 0.6), (384, 0.0), (101, 0.0)] {
+        let drawing = Drawing::of(&format!(
+            "{MAP}texture t(uv: vec2) -> (area: float) {{\n\
+                 area = float(areas.dithered_area(ifloor(uv * {n}.0), {n}, softness: {softness:?}))\n\
+             }}"
+        ));
+        let pixels = drawing.cells(n);
+        assert_eq!(drawing.worst().fetches, 1.0);
+        for area in [0.0, 1.0, 2.0, 3.0] {
+            let (mut expected, mut variance, mut found) = (0.0, 0.0, 0.0);
+            for (i, pixel) in (0..).zip(&pixels) {
+                let p = probability([i % n, i / n], n, softness, area);
+                let is_drawn = f64::from(u8::from(pixel[0] == area));
+                assert!(p > 0.0 && p < 1.0 || is_drawn == p, "cell {i} of {n}: {pixel:?}, {area} has {p}");
+                (expected, variance, found) = (expected + p, variance + p * (1.0 - p), found + is_drawn);
+            }
+            let off = (found - expected).abs();
+            assert!(off <= FAR * f64::sqrt(variance), "{n}, {softness}: {area} is {found}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn areas_of_a_node_are_those_of_a_map() {
+    let area = |call: &str| {
+        Drawing::of(&format!("{MAP}texture t(uv: vec2) -> (area: float) {{ area = float({call}) }}"))
+    };
+    let cell = "ifloor((uv - 2.0) * 96.0)";
+    let map = area(&format!("areas.dithered_area({cell}, 96)"));
+    let node = area(&format!("dithered_area(|g| areas.at(g), {cell}, 96, ivec2(3, 4))"));
+    assert_eq!(map.cells(200), node.cells(200));
+}
+
+#[test]
+fn from_afar_areas_are_the_mean_of_what_they_draw() {
+    let color = |color: &str| {
+        Drawing::of(&format!("{GRASS}{MAP}texture t(uv: vec2) -> (color: color) {{ color = {color} }}"))
+    };
+    for softness in ["1.0", "0.4", "0.0"] {
+        let cell = "ifloor(uv * 480.0)";
+        let drawn = color(&format!("grass.average(areas.dithered_area({cell}, 480, softness: {softness}))"));
+        let mean = color(&format!("areas.dithered_average(uv, |i| grass.average(i), softness: {softness})"));
+        let (drawn, mean) = (drawn.cells(480), mean.cells(480));
+        // A twelfth of the map is 40 cells a side.
+        let block = |pixels: &[[f32; 4]], i: usize| {
+            let cells = (0..1600).map(|k| (i / 12 * 40 + k / 40) * 480 + i % 12 * 40 + k % 40);
+            cells.map(|k| f64::from(pixels[k][1])).sum::<f64>() / 1600.0
+        };
+        for i in 0..144 {
+            let (drawn, mean) = (block(&drawn, i), block(&mean, i));
+            assert!((drawn - mean).abs() < 0.004, "{softness}: block {i} is {drawn}, not {mean}");
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! What the blocks of pattern based textures give, seen by the CPU renderer at a pixel a cell: the
+//! proportions in which they draw, and what they cost.
+
+mod distribution;
+mod support;
