@@ -18,6 +18,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/splat.tex", include_str!("../std/splat.tex")),
     ("std/resources.tex", include_str!("../std/resources.tex")),
     ("std/distribution.tex", include_str!("../std/distribution.tex")),
+    ("std/materials.tex", include_str!("../std/materials.tex")),
     ("std/noise.tex", include_str!("../std/noise.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),

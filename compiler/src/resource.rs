@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, FunctionId, Scalar, Texel, View, ViewDimension};
 use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, Stop, Wrap};
 
+mod materials;
 mod probability;
 
 /// A resource of a program: one constructor call.
@@ -43,8 +44,9 @@ pub struct Kind {
     /// The constructor's and the type's name.
     pub name: &'static str,
     /// What the constructor takes. Besides the language's types: `text`, `texts` (one string or a
-    /// list of them), `cells` (a string or rows of ints), `numbers` (a list of them) and `stops`
-    /// (lists of a place and a colour, any number of them one after the other).
+    /// list of them), `cells` (a string or rows of ints), `numbers` (a list of them), `resources`
+    /// (a list of them) and `stops` (lists of a place and a colour, any number of them one after the
+    /// other).
     pub constructor: &'static str,
     /// One line for the reference.
     pub doc: &'static str,
@@ -84,6 +86,10 @@ pub enum FieldKind {
     Row,
     /// A number known from the arguments.
     Constant,
+    /// The resource itself seen as one of another kind, by its name: the views and constants of that
+    /// kind's fields are those of the same name, but for its `count`, which is named here. There is
+    /// none where that is 0.
+    As(&'static str, &'static str),
     /// A colour that is read: the texel of the first row of a view, at a constant; both by name.
     Texel(&'static str, &'static str),
 }
@@ -94,7 +100,7 @@ impl FieldKind {
         match self {
             FieldKind::View(view) => Some(view),
             FieldKind::Row => Some(SHARED),
-            FieldKind::Constant | FieldKind::Texel(..) => None,
+            FieldKind::Constant | FieldKind::Texel(..) | FieldKind::As(..) => None,
         }
     }
 }
@@ -131,6 +137,8 @@ pub enum Argument {
     Stops(Vec<Stop>),
     /// A list of numbers, with where each stands.
     Numbers(Vec<(Constant, Place)>),
+    /// A list of resources.
+    Resources(Vec<Part>),
     /// A number.
     Number(Constant),
     /// A bare word.
@@ -139,6 +147,30 @@ pub enum Argument {
     Node,
     /// What was not given and has no default.
     Absent,
+}
+
+/// A resource that another is made of.
+#[derive(Clone)]
+pub struct Part {
+    /// Its number among the program's resources.
+    pub index: u32,
+    /// Its kind's name.
+    pub kind: &'static str,
+    /// What its bytes are made of.
+    pub recipe: Recipe,
+    /// Its constant fields.
+    pub constants: Vec<(&'static str, Constant)>,
+    /// How it is sampled.
+    pub sampler: Option<SamplerState>,
+    /// Where it is named.
+    pub place: Place,
+}
+
+impl Part {
+    /// A constant field that is an int; 0 where there is none.
+    fn int(&self, name: &str) -> i32 {
+        self.constants.iter().find(|(field, _)| *field == name).map_or(0, |(_, constant)| constant.int(0))
+    }
 }
 
 impl Arguments {
@@ -177,6 +209,14 @@ impl Arguments {
         match self.get(name) {
             Some((Argument::Numbers(numbers), _)) => Some(numbers),
             _ => None,
+        }
+    }
+
+    /// A list of resources.
+    fn parts(&self, name: &str) -> &[Part] {
+        match self.get(name) {
+            Some((Argument::Resources(parts), _)) => parts,
+            _ => &[],
         }
     }
 
@@ -299,6 +339,27 @@ pub static KINDS: &[Kind] = &[
         make: probability::make,
     },
     Kind {
+        name: "materials",
+        constructor: "(items: resources, families: numbers = none, size: ivec2 = 0) -> materials",
+        doc: "Probabilities, or patterns, chosen by a number.",
+        gives: None,
+        fields: &[
+            Field { name: "table", kind: FieldKind::Row },
+            Field { name: "layers", kind: FieldKind::View(LAYERS) },
+            Field { name: "means", kind: FieldKind::View(PIXELS) },
+            Field { name: "patterns", kind: FieldKind::As("patterns", "tiles") },
+            Field { name: "count", kind: FieldKind::Constant },
+            Field { name: "size", kind: FieldKind::Constant },
+            Field { name: "least", kind: FieldKind::Constant },
+            Field { name: "reach", kind: FieldKind::Constant },
+            Field { name: "tiles", kind: FieldKind::Constant },
+            Field { name: "linear", kind: FieldKind::Constant },
+            Field { name: "row", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: materials::make,
+    },
+    Kind {
         name: "indices",
         constructor: "(cells: cells, levels: int = 256) -> indices",
         doc: "An integer map, which wraps.",
@@ -343,8 +404,7 @@ pub fn made_by(row: usize) -> usize {
 }
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] =
-    &["images", "volume", "materials", "exemplar", "sprites", "positions", "pixel_map"];
+pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites", "positions", "pixel_map"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(a.wrap())?;

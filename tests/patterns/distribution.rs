@@ -193,3 +193,81 @@ fn from_afar_areas_are_the_mean_of_what_they_draw() {
         }
     }
 }
+
+/// Two materials of lists of one length, and two that have no short common length.
+#[test]
+fn materials_draw_each_in_its_proportions() {
+    let lists = [
+        ("[0, 0, 0, 5]", "[2, -1]", 1.0),
+        ("weights: [3, 0, 0, 0, 0, 1], size: 1024", "weights: [0, 0, 1], blank: 1, size: 1023", 2.0),
+    ];
+    for (first, second, fetches) in lists {
+        let drawing = Drawing::of(&format!(
+            "let lawn = probability({first})\n\
+             let weeds = probability({second})\n\
+             let grounds = materials([lawn, weeds])\n\
+             texture t(uv: vec2) -> (pick: float) {{\n\
+                 let cell = ifloor(uv * 512.0)\n\
+                 pick = float(grounds.at(cell.x / 256, virtual_index(cell, 1024 * 1023)))\n\
+             }}"
+        ));
+        assert_eq!(drawing.worst().fetches, fetches);
+        let pixels = drawing.cells(SIDE);
+        let half = |right: bool| {
+            let side = SIDE as usize;
+            let pixels = pixels.iter().enumerate().filter(move |(i, _)| (i % side >= side / 2) == right);
+            pixels.map(|(_, pixel)| *pixel).collect::<Vec<_>>()
+        };
+        for (right, pick, p) in [(false, 0.0, 0.75), (false, 5.0, 0.25), (true, 2.0, 0.5), (true, -1.0, 0.5)]
+        {
+            let half = half(right);
+            // A list of an odd length holds one blank entry less.
+            let p = if fetches > 1.0 && right {
+                f64::round(p * 1023.0 - 0.1 * f64::from(pick)) / 1023.0
+            } else {
+                p
+            };
+            let found = count(&half, |pixel| pixel[0] == pick);
+            assert!(deviations(found, half.len(), p) < FAR, "{pick}: {found} of {}", half.len());
+        }
+    }
+}
+
+#[test]
+fn families_are_as_given_or_each_its_own() {
+    for (families, expected) in [("", [0.0, 1.0, 2.0]), (", families: [4, 0, 4]", [4.0, 0.0, 4.0])] {
+        let drawing = Drawing::of(&format!(
+            "let l = probability([0])\nlet m = materials([l, l, l]{families})\n\
+             texture t(uv: vec2) -> (family: float) {{ family = float(m.family(ifloor(uv.x * 3.0))) }}"
+        ));
+        let row = drawing.seen([3, 1], [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(row.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), expected);
+    }
+}
+
+#[test]
+fn the_mean_of_a_material_is_that_of_what_it_draws() {
+    let lists = format!(
+        "{GRASS}let lawn = probability(weights: [8, 4, 2, 1], blank: 5, size: 64)\n\
+         let weeds = probability([15, 3, 3])\nlet drawn = materials([lawn, weeds])\n\
+         let tiles = materials([grass, patterns(\"tiles/grass.png\", grid: ivec2(4, 8))], size: ivec2(32))\n"
+    );
+    let color = |color: &str| {
+        Drawing::of(&format!("{lists}texture t(uv: vec2) -> (color: color) {{ color = {color} }}"))
+            .seen([2, 1], [0.0, 0.0, 1.0, 1.0])
+    };
+    let material = "ifloor(uv.x * 2.0)";
+    let means = [
+        (
+            format!("drawn.average({material}, p: grass)"),
+            "if uv.x < 0.5 { lawn.average(grass) } else { weeds.average(grass) }",
+        ),
+        (format!("tiles.average({material})"), "grass.average"),
+    ];
+    for (mean, expected) in means {
+        for (mean, expected) in color(&mean).iter().zip(color(expected)) {
+            let off = mean.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(off < 2e-3, "{mean:?} {expected:?}");
+        }
+    }
+}

@@ -51,13 +51,6 @@ impl Drawing {
     pub fn worst(&self) -> Counts {
         cost(&self.compiled).texture().map(|pass| pass.worst).unwrap_or_default()
     }
-
-    /// The bytes of a field of a resource.
-    pub fn bytes(&self, resource: &str, field: &str) -> &[u8] {
-        let all = &self.compiled.program.manifest.resources;
-        let index = all.iter().position(|found| found.name == resource).expect("there is one");
-        self.tables.get(index, field).expect("it was made")
-    }
 }
 
 /// How far a count of `n` draws of probability `p` is from the expected one, in standard deviations.

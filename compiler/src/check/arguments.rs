@@ -354,7 +354,7 @@ impl<'a> Checker<'a> {
             (Declared::Resource(_) | Declared::Numbers, Wire::None) => Wire::None,
             (Declared::Text, Wire::Text(text)) => Wire::Text(text.clone()),
             (Declared::Texts | Declared::Cells, wire @ (Wire::Text(_) | Wire::List(_))) => wire.clone(),
-            (Declared::Stops | Declared::Numbers, wire @ Wire::List(_)) => wire.clone(),
+            (Declared::Stops | Declared::Numbers | Declared::Resources, wire @ Wire::List(_)) => wire.clone(),
             (_, Wire::Word(word)) => self.unknown_value(f, &word.text, word.place),
             (_, Wire::Callables(nodes)) => self.report(f, names::node_as_value(place, &nodes.name)),
             (declared, wire) => {
@@ -365,6 +365,7 @@ impl<'a> Checker<'a> {
                     Declared::Texts => "a string or a list of strings".to_owned(),
                     Declared::Stops => "stops such as `[0.5, #8d8f94]`".to_owned(),
                     Declared::Numbers => "a list of numbers".to_owned(),
+                    Declared::Resources => "a list of resources".to_owned(),
                     _ => "a string or a list of lists".to_owned(),
                 };
                 self.report(f, errors::resource_mismatch(place, input, &wanted, &found))

@@ -7,7 +7,7 @@ use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};
 use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, View, ViewId};
 use crate::manifest::{Recipe, Stop};
-use crate::resource::{Argument, Arguments, FieldKind, KINDS, Made, Resource, SHARED, made_by};
+use crate::resource::{Argument, Arguments, Field, FieldKind, KINDS, Made, Part, Resource, SHARED, made_by};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Input, TypeKind};
 
@@ -26,7 +26,7 @@ impl<'a> Checker<'a> {
     ) -> Wire {
         let mut values = Vec::new();
         for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
-            match argument(f, input, wire, *at) {
+            match argument(f, &self.resources, input, wire, *at) {
                 Ok(argument) => values.push((input.name.text.to_string(), *at, argument)),
                 Err(diagnostic) => return self.report(f, diagnostic),
             }
@@ -81,7 +81,7 @@ impl<'a> Checker<'a> {
                         constants.push(("row", row));
                         views.push(self.shared_view());
                     }
-                    FieldKind::Constant | FieldKind::Texel(..) => {}
+                    FieldKind::Constant | FieldKind::Texel(..) | FieldKind::As(..) => {}
                 }
             }
             self.resource_wires.push(ResourceFields { kind, views, constants });
@@ -148,6 +148,9 @@ impl<'a> Checker<'a> {
         if let Some((_, view)) = resource.views.iter().find(|(field, _)| *field == name) {
             return Some(Wire::View(*view));
         }
+        if let Some(other) = seen_as(resource, name) {
+            return Some(other);
+        }
         if let Some(texel) = texel_field(f, resource, name) {
             return Some(texel);
         }
@@ -155,6 +158,25 @@ impl<'a> Checker<'a> {
         let (_, view) = resource.views.iter().find(|(field, _)| *field == stands_for)?;
         view_field(f, *view, name)
     }
+}
+
+/// A field that is the resource itself as one of another kind.
+fn seen_as(resource: &ResourceWire, name: &str) -> Option<Wire> {
+    let field = KINDS[resource.kind].fields.iter().find(|field| field.name == name)?;
+    let FieldKind::As(kind, count) = field.kind else { return None };
+    let constant = |name: &str| resource.constants.iter().find(|(known, _)| *known == name);
+    let count = constant(count).map(|(_, count)| *count).filter(|count| count.int(0) > 0)?;
+    let kind = KINDS.iter().position(|known| known.name == kind)?;
+    let fields = KINDS[kind].fields;
+    let view = |field: &Field| resource.views.iter().find(|(known, _)| *known == field.name).copied();
+    let other = fields.iter().filter(|field| field.kind == FieldKind::Constant && field.name != "count");
+    let others = other.filter_map(|field| constant(field.name)).chain(constant(ANISOTROPY)).copied();
+    Some(Wire::Resource(Rc::new(ResourceWire {
+        kind,
+        id: None,
+        views: fields.iter().filter_map(view).collect(),
+        constants: std::iter::once(("count", count)).chain(others).collect(),
+    })))
 }
 
 /// A field that is a texel of another field.
@@ -186,7 +208,13 @@ pub fn joined_stops<'a>(head: Head<'a>, given: &[Given<'a>]) -> Option<arguments
 }
 
 /// A wire as a constructor takes it.
-fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<Argument, Diagnostic> {
+fn argument(
+    f: &Frame<'_>,
+    made: &[Resource],
+    input: &Input,
+    wire: &Wire,
+    place: Place,
+) -> Result<Argument, Diagnostic> {
     let name = input.name.text.as_str();
     match wire {
         Wire::Text(text) => Ok(Argument::Text(text.to_string())),
@@ -198,6 +226,10 @@ fn argument(f: &Frame<'_>, input: &Input, wire: &Wire, place: Place) -> Result<A
         Wire::Node(_) => Ok(Argument::Node),
         Wire::None => Ok(Argument::Absent),
         Wire::List(items) if is_named(input, "numbers") => numbers(f, name, items),
+        Wire::List(items) if is_named(input, "resources") => {
+            let parts = items.iter().map(|(wire, at)| part(made, name, wire, *at));
+            parts.collect::<Result<_, _>>().map(Argument::Resources)
+        }
         Wire::List(items) if is_named(input, "texts") => texts(name, items, place),
         Wire::List(items) if is_named(input, STOPS) => {
             let stops = items.iter().map(|(wire, at)| stop(f, name, wire, *at));
@@ -254,6 +286,23 @@ fn texts(input: &str, items: &[(Wire, Place)], place: Place) -> Result<Argument,
         _ => Err(constructors::wrong_argument(*at, input, TEXTS)),
     };
     items.iter().map(text).collect::<Result<_, _>>().map(Argument::Texts)
+}
+
+/// A resource that another is made of.
+fn part(made: &[Resource], input: &str, wire: &Wire, place: Place) -> Result<Part, Diagnostic> {
+    let Wire::Resource(resource) = wire else {
+        return Err(constructors::wrong_argument(place, input, "a list of resources"));
+    };
+    let known = resource.id.and_then(|id| Some((id, made.get(id)?)));
+    let (id, known) = known.ok_or_else(|| constructors::not_known(place, input))?;
+    Ok(Part {
+        index: id as u32,
+        kind: KINDS[resource.kind].name,
+        recipe: known.recipe.clone(),
+        constants: resource.constants.clone(),
+        sampler: known.sampler,
+        place,
+    })
 }
 
 /// A list of numbers.

@@ -36,6 +36,8 @@ pub enum Declared {
     Stops,
     /// Constructors only: a list of numbers, or nothing.
     Numbers,
+    /// Constructors only: a list of resources.
+    Resources,
 }
 
 /// What a node that is passed to another must take and give.
@@ -167,6 +169,7 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
         "cells" => Ok(Declared::Cells),
         "stops" => Ok(Declared::Stops),
         "numbers" => Ok(Declared::Numbers),
+        "resources" => Ok(Declared::Resources),
         "texel" => Ok(Declared::Texel),
         "mat2" => Ok(Declared::Matrix(2)),
         "mat3" => Ok(Declared::Matrix(3)),

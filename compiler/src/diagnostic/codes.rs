@@ -99,6 +99,7 @@ pub const PAGES: &[(&str, &str)] = &[
     ("E0555", include_str!("pages/E0555.md")),
     ("E0556", include_str!("pages/E0556.md")),
     ("E0557", include_str!("pages/E0557.md")),
+    ("E0558", include_str!("pages/E0558.md")),
     ("E0601", include_str!("pages/E0601.md")),
     ("E0602", include_str!("pages/E0602.md")),
     ("E0603", include_str!("pages/E0603.md")),

@@ -142,3 +142,51 @@ pub fn list_too_short(place: Place, size: u32, least: u32) -> Diagnostic {
     )
     .help(help)
 }
+
+/// Materials of nothing.
+pub fn no_materials(place: Place) -> Diagnostic {
+    Diagnostic::new("E0558", place, "there are no materials in this list", "at least one is needed")
+        .help("write `materials([meadow, gravel])`")
+}
+
+/// Something other than a probability or patterns among materials, or one of the two among the other.
+pub fn not_a_material(place: Place, kind: &str, others: Option<&str>) -> Diagnostic {
+    let message = match others {
+        Some(others) => format!("this is `{kind}`, the materials before it are `{others}`"),
+        None => format!("`{kind}` is no material"),
+    };
+    Diagnostic::new("E0558", place, message, "here")
+        .help("materials are all `probability`, or all `patterns`")
+}
+
+/// Patterns that one texture can't hold together.
+pub fn materials_differ(place: Place, what: &str) -> Diagnostic {
+    Diagnostic::new(
+        "E0558",
+        place,
+        format!("these patterns have another {what} than those before them"),
+        "the patterns of all materials are layers of one texture",
+    )
+    .help(format!("make all of them with the same `{what}`"))
+}
+
+/// A number of families that is not that of the materials.
+pub fn families_of_others(place: Place, families: usize, materials: usize) -> Diagnostic {
+    Diagnostic::new(
+        "E0558",
+        place,
+        format!("{families} families for {materials} materials"),
+        "one number for each material",
+    )
+}
+
+/// Lists that have too many entries together.
+pub fn materials_too_long(place: Place, entries: u64, most: u64) -> Diagnostic {
+    Diagnostic::new(
+        "E0558",
+        place,
+        format!("the lists of these materials have {entries} entries, at most {most} fit"),
+        "too many together",
+    )
+    .help("give the probabilities a smaller `size`")
+}

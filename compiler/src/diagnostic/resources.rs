@@ -77,6 +77,17 @@ pub fn sizes_differ(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2
     .help(format!("scale `{odd}` to {width}×{height}"))
 }
 
+/// Patterns of materials that differ in size.
+pub fn materials_of_sizes(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2])) -> Diagnostic {
+    let (path, [width, height]) = first;
+    let (odd, [odd_width, odd_height]) = other;
+    let what = format!(
+        "patterns of `{odd}` have {odd_width}×{odd_height} texels, those of `{path}` {width}×{height}"
+    );
+    Diagnostic::new("E0508", place, what, "the patterns of all materials are layers of one texture")
+        .help(format!("have them resampled: `size: ivec2({width}, {height})`"))
+}
+
 /// More layers than every GPU has.
 pub fn too_many_layers(place: Place, layers: u64, limit: u32) -> Diagnostic {
     Diagnostic::new(

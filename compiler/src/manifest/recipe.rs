@@ -54,6 +54,22 @@ pub enum Recipe {
         /// The list, 1 to 4096 numbers from -1, the blank pattern, to 255.
         numbers: Vec<i32>,
     },
+    /// Probabilities, or patterns, chosen by a number: a row of the program's [`Recipe::Tables`].
+    /// Entry m of it stands for material m: where its list begins in the row, how long it is, its
+    /// family, 0. An entry of a list holds a pattern's number and, at i from its beginning, how often
+    /// number i stands in it; a list is repeated until both fit. Of patterns, field `layers` is that
+    /// of all of them one after the other, field `means` the same with the mean of each material last.
+    Materials {
+        /// Indices of resources: all probabilities or all patterns.
+        items: Vec<u32>,
+        /// The family of each.
+        families: Vec<i32>,
+        /// Entries of each list: a common multiple of all lengths, where that is short; else 0, and
+        /// each has its own.
+        length: u32,
+        /// Of patterns: the size to which they are resampled; none where they have one.
+        size: Option<[u32; 2]>,
+    },
     /// An integer map. Field `map`.
     Indices {
         /// Where the integers come from.
@@ -65,7 +81,7 @@ pub enum Recipe {
     /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
     /// the r-th of these resources; the width is that of the longest.
     Tables {
-        /// Indices of resources: permutations, probabilities.
+        /// Indices of resources: permutations, probabilities, materials.
         rows: Vec<u32>,
     },
     /// A ramp of colours, filtered. Field `colors`: 256 texels across from the first stop to the last,

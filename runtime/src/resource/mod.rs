@@ -8,11 +8,13 @@ mod decode;
 mod encoding;
 mod image;
 mod indices;
+mod materials;
 mod patterns;
 mod permutation;
 mod probability;
 pub(crate) mod pyramid;
 mod ramp;
+mod resample;
 pub(crate) mod table;
 mod tables;
 
@@ -95,7 +97,7 @@ fn make(
     project: &Project,
     place: Place,
     recipe: &Recipe,
-    all: &[Resource],
+    known: &[Resource],
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     match recipe {
         Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
@@ -103,12 +105,29 @@ fn make(
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         // A row of the shared tables, and nothing of its own.
         Recipe::Probability { .. } => Ok(Vec::new()),
+        Recipe::Materials { items, size, .. } => materials::make(project, place, items, *size, known),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
-        Recipe::Tables { rows } => tables::make(place, rows, all),
+        Recipe::Tables { rows } => tables::make(place, rows, known),
         // Made by rendering its pass.
         Recipe::Bake { .. } => Ok(Vec::new()),
     }
+}
+
+/// The results for all items, in parallel; or all errors, in their order.
+fn all<'a, T: Sync, R: Send>(
+    items: &'a [T],
+    f: impl Fn(&'a T) -> Result<R, Vec<Diagnostic>> + Send + Sync,
+) -> Result<Vec<R>, Vec<Diagnostic>> {
+    let results: Vec<_> = items.par_iter().map(f).collect();
+    let (mut done, mut errors) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(one) => done.push(one),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if errors.is_empty() { Ok(done) } else { Err(errors) }
 }
 
 /// Keeps the fields that the shader reads, in the manifest's order.

@@ -1,7 +1,7 @@
 //! Small tables that share one texture, a row each. Field `table`.
 
 use super::table::Made;
-use super::{permutation, probability};
+use super::{materials, permutation, probability};
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
 use texgraph_compiler::manifest::{Format, Recipe, Resource};
 
@@ -12,6 +12,9 @@ use texgraph_compiler::manifest::{Format, Recipe, Resource};
 pub fn make(place: Place, rows: &[u32], all: &[Resource]) -> Result<Vec<Made>, Vec<Diagnostic>> {
     let entries = rows.iter().map(|row| match all.get(*row as usize).map(|resource| &resource.recipe) {
         Some(Recipe::Permutation { size, seed }) => permutation::entries(place, *size, *seed),
+        Some(Recipe::Materials { items, families, length, .. }) => {
+            materials::entries(place, (items, families), *length, all)
+        }
         Some(Recipe::Probability { numbers }) => probability::entries(place, numbers),
         _ => {
             let message = format!("resource {row} is no small table");

@@ -81,6 +81,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Permutation { .. } | Recipe::Probability { .. } => {
             ("table", ViewDimension::D2, SampleKind::Int)
         }
+        Recipe::Materials { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
         Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),
