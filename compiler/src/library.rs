@@ -16,6 +16,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/transition.tex", include_str!("../std/transition.tex")),
     ("std/animation.tex", include_str!("../std/animation.tex")),
     ("std/splat.tex", include_str!("../std/splat.tex")),
+    ("std/layers.tex", include_str!("../std/layers.tex")),
     ("std/resources.tex", include_str!("../std/resources.tex")),
     ("std/distribution.tex", include_str!("../std/distribution.tex")),
     ("std/materials.tex", include_str!("../std/materials.tex")),

@@ -1,5 +1,9 @@
 //! What the blocks of pattern based textures give, seen by the CPU renderer at a pixel a cell: the
 //! proportions in which they draw, and what they cost.
 
+mod animation;
 mod distribution;
+mod layers;
+mod splat;
 mod support;
+mod transition;

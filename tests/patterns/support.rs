@@ -53,6 +53,14 @@ impl Drawing {
     }
 }
 
+/// The pages of what is wrong with a text.
+pub fn errors(text: &str) -> String {
+    let files: HashMap<String, String> = [("main.tex".to_owned(), text.to_owned())].into();
+    let library = Library::standard().expect("the library is right");
+    let failure = compile(&library, "main.tex", &files, &Options::default()).expect_err("it is wrong");
+    render::human(&failure.sources, &failure.diagnostics)
+}
+
 /// How far a count of `n` draws of probability `p` is from the expected one, in standard deviations.
 pub fn deviations(count: usize, n: usize, p: f64) -> f64 {
     let (n, spread) = (n as f64, (n as f64 * p * (1.0 - p)).sqrt());
