@@ -39,6 +39,7 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
         ("reach", bounds.1),
         ("tiles", tiles),
         ("linear", i32::from(is_linear)),
+        ("taps", first.sampler.map_or(1, |sampler| i32::from(sampler.anisotropy))),
     ];
     let items = parts.iter().map(|part| part.index).collect();
     Ok(Made {
