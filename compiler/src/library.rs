@@ -13,6 +13,8 @@ use texgraph_grammar::syntax::{ItemKind, Signature};
 /// The files, one per technique.
 const FILES: &[(&str, &str)] = &[
     ("std/tiling.tex", include_str!("../std/tiling.tex")),
+    ("std/draws.tex", include_str!("../std/draws.tex")),
+    ("std/placing.tex", include_str!("../std/placing.tex")),
     ("std/transition.tex", include_str!("../std/transition.tex")),
     ("std/animation.tex", include_str!("../std/animation.tex")),
     ("std/splat.tex", include_str!("../std/splat.tex")),

@@ -305,6 +305,7 @@ pub static KINDS: &[Kind] = &[
             Field { name: "count", kind: FieldKind::Constant },
             Field { name: "linear", kind: FieldKind::Constant },
             Field { name: "taps", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
         ],
         view: None,
         make: make_patterns,
@@ -462,6 +463,7 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
             ("count", Constant::ints(&[count as i32])),
             ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
             ("taps", Constant::ints(&[i32::from(sampler.anisotropy)])),
+            ("normals", Constant::ints(&[i32::from(a.encoding() == Encoding::Normal)])),
         ],
         // The library's nodes take the taps, so that they reach other patterns.
         sampler: Some(SamplerState { anisotropy: 1, ..sampler }),
