@@ -244,6 +244,7 @@ fn the_level_has_no_seam(renderer: &Renderer) -> Result<(), Failed> {
         "let (far, there) = tile_map(turned(uv), ivec2(1))
          color = sharp.tiled(far, there, |c| virtual_index(c, 4), far: vec4(vec3(0.5), 1.0))",
         "color = sharp.reference(0, turned(uv), edges: wrap)",
+        "color = tiles.tiled(cell, at, |c| virtual_index(c, 4), far: vec4(vec3(0.5), 1.0), orient: 8)",
     ];
     for body in bodies {
         let source = format!(
