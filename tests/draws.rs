@@ -192,10 +192,15 @@ fn no_line_of_a_walk_repeats() {
     assert!(longest < 64, "{longest}");
 }
 
+/// Three streams of `virtual_index` and the first of `virtual_random`.
 #[test]
 fn streams_of_a_walk_are_independent() {
-    let fields: Vec<Vec<u32>> = (0..3).map(|stream| walked(SQUARE, "uv", stream)).collect();
-    for (one, two) in [(0, 1), (0, 2), (1, 2)] {
+    let mut fields: Vec<Vec<u32>> = (0..3).map(|stream| walked(SQUARE, "uv", stream)).collect();
+    let random = "let sigma = permutation(256, seed: 1)\n\
+                  texture t(uv: vec2) -> (index: int) {\n\
+                  index = int(virtual_random(ifloor(uv), sigma: sigma).x * 16.0)\n}";
+    fields.push(drawn(random, [0, 0], SQUARE));
+    for (one, two) in (0..4).flat_map(|two| (0..two).map(move |one| (one, two))) {
         let pairs = fields[one].iter().zip(&fields[two]).map(|(a, b)| COUNT * *a as usize + *b as usize);
         let found = dependence(&frequencies(pairs, COUNT * COUNT));
         let off = deviate(found.chi_square, (COUNT - 1).pow(2));
