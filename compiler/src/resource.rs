@@ -356,6 +356,7 @@ pub static KINDS: &[Kind] = &[
             Field { name: "tiles", kind: FieldKind::Constant },
             Field { name: "linear", kind: FieldKind::Constant },
             Field { name: "taps", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
             Field { name: "row", kind: FieldKind::Constant },
         ],
         view: None,

@@ -39,7 +39,8 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
         ("reach", bounds.1),
         ("tiles", tiles),
         ("linear", i32::from(is_linear)),
-        ("taps", first.sampler.map_or(1, |sampler| i32::from(sampler.anisotropy))),
+        ("taps", first.int("taps")),
+        ("normals", first.int("normals")),
     ];
     let items = parts.iter().map(|part| part.index).collect();
     Ok(Made {
@@ -69,7 +70,7 @@ fn of_one_kind(parts: &[Part], first: &Part) -> Result<bool, Diagnostic> {
         if part.sampler.map(|s| s.filter) != first.sampler.map(|s| s.filter) {
             return Err(constructors::materials_differ(part.place, "filter"));
         }
-        if part.sampler != first.sampler {
+        if part.sampler != first.sampler || part.int("taps") != first.int("taps") {
             return Err(constructors::materials_differ(part.place, "anisotropy"));
         }
     }
