@@ -4,6 +4,7 @@
 //! small parsers at the end read sizes, regions and times, so a subcommand only sees values that
 //! make sense.
 
+use crate::tiles::args::Tiles;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -98,6 +99,8 @@ pub enum Command {
     Cost(Cost),
     /// Draw the node diagram of a texture or a node
     Graph(Graph),
+    /// Make and check tile sets: sheets of tiles that fit together
+    Tiles(Tiles),
     /// Put .tex files into their canonical layout
     Fmt(Fmt),
     /// Explain an error code
@@ -113,6 +116,7 @@ impl Command {
             | Command::Render(Render { common, .. })
             | Command::Cost(Cost { common, .. })
             | Command::Graph(Graph { common, .. }) => common.message_format,
+            Command::Tiles(tiles) => tiles.message_format(),
             Command::Fmt(_) | Command::Explain(_) => MessageFormat::Human,
         }
     }

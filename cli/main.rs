@@ -22,6 +22,7 @@ mod output;
 mod problem;
 mod program;
 mod render;
+mod tiles;
 
 use args::{Args, Command};
 use clap::Parser;
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Cost(args) => cost::run(args, &mut report),
         Command::Graph(args) => graph::run(args),
+        Command::Tiles(args) => tiles::run(args, &mut report),
         Command::Fmt(args) => fmt::run(args, &mut report),
         Command::Explain(args) => explain::run(args),
     };

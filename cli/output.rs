@@ -23,6 +23,18 @@ pub fn write<B: AsRef<[u8]>>(files: &[(PathBuf, B)]) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Finds out early whether a picture can be written: it is a PNG, and there is a place for it.
+///
+/// # Errors
+/// Its name ends otherwise, or as [`try_out`] says.
+pub fn try_png(path: &Path) -> Result<(), Problem> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        let path = path.display();
+        return Err(Problem::Usage(format!("only PNG pictures are written: `{path}` must end in `.png`")));
+    }
+    try_out(path)
+}
+
 /// Finds out early whether a file can be written: before minutes of rendering, not after.
 ///
 /// # Errors

@@ -10,7 +10,6 @@ use crate::problem::Problem;
 use crate::program::{self, Program};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::Write;
-use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use texgraph_compiler::{Compiled, Options, Plane};
@@ -28,7 +27,7 @@ const UNIT_SQUARE: [f64; 4] = [0.0, 0.0, 1.0, 1.0];
 /// # Errors
 /// Anything is wrong; the old picture is then as it was.
 pub fn run(args: &Render) -> Result<(), Problem> {
-    check_target(&args.output_file)?;
+    output::try_png(&args.output_file)?;
     let plane = plane(args)?;
     let (file, texture) = program::split(&args.file);
     let library = program::library()?;
@@ -49,15 +48,6 @@ pub fn run(args: &Render) -> Result<(), Problem> {
     let picture = renderer.render(&compiled.program, &tables, &request, &|share| progress.hear(share))?;
     progress.bar.finish_and_clear();
     output::write(&[(args.output_file.clone(), picture.to_png()?)])
-}
-
-/// The picture is a PNG, and there is a place for it.
-fn check_target(path: &Path) -> Result<(), Problem> {
-    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        let path = path.display();
-        return Err(Problem::Usage(format!("only PNG pictures are written: `{path}` must end in `.png`")));
-    }
-    output::try_out(path)
 }
 
 /// The camera, unless the view is flat.

@@ -19,6 +19,7 @@ pub mod project;
 pub mod render;
 pub mod resource;
 pub mod settings;
+pub mod tiles;
 pub mod uniform;
 
 mod false_color;

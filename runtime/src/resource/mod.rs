@@ -4,7 +4,7 @@
 //! runs on the CPU, in parallel, and gives the same bytes for any number of threads and on any
 //! machine. Errors are found all at once and stand at the constructor calls.
 
-mod decode;
+pub(crate) mod decode;
 mod encoding;
 mod image;
 mod indices;
@@ -19,6 +19,8 @@ pub(crate) mod table;
 mod tables;
 
 pub use encoding::{SrgbEncoder, srgb_to_linear};
+pub(crate) use permutation::pcg4d;
+pub(crate) use table::MAX_LAYERS;
 
 use crate::project::Project;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};

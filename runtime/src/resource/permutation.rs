@@ -48,7 +48,7 @@ fn shuffle(size: u32, channel: u32, seed: i32) -> Vec<i32> {
 }
 
 /// Four random words of four words (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
-fn pcg4d(words: [u32; 4]) -> [u32; 4] {
+pub fn pcg4d(words: [u32; 4]) -> [u32; 4] {
     let mixed = mix(words.map(|word| word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)));
     mix(mixed.map(|word| word ^ (word >> 16)))
 }

@@ -1,0 +1,59 @@
+//! `texgraph tiles`: tile sets from photographs. Each subcommand is a file of its name.
+
+pub mod args;
+mod check;
+mod layout;
+mod make;
+mod transition;
+
+use crate::output;
+use crate::problem::{Problem, Report};
+use args::{Tiles, TilesCommand};
+use std::path::Path;
+use texgraph_compiler::module::{Source, Sources};
+use texgraph_compiler::Failure;
+use texgraph_runtime::tiles::{Bitmap, TilesError};
+
+/// Runs the subcommand.
+///
+/// # Errors
+/// As it says.
+pub fn run(args: &Tiles, report: &mut Report) -> Result<(), Problem> {
+    match &args.command {
+        TilesCommand::Make(args) => make::run(args),
+        TilesCommand::Transition(args) => transition::run(args),
+        TilesCommand::Layout(args) => layout::run(args),
+        TilesCommand::Check(args) => check::run(args, report),
+    }
+}
+
+/// Reads a picture.
+fn open(path: &Path) -> Result<Bitmap, Problem> {
+    Bitmap::open(path).map_err(|diagnostics| {
+        let sources = Sources(vec![Source { path: path.display().to_string(), text: "".into() }]);
+        Problem::Pages(Failure { sources, diagnostics })
+    })
+}
+
+/// Makes a sheet for a place that is known to be writable, and writes it.
+fn write(path: &Path, make: impl FnOnce() -> Result<Bitmap, Problem>) -> Result<(), Problem> {
+    output::try_png(path)?;
+    output::write(&[(path.to_path_buf(), make()?.to_png()?)])
+}
+
+impl From<TilesError> for Problem {
+    fn from(error: TilesError) -> Problem {
+        let sentence = error.to_string();
+        match error {
+            TilesError::Count { .. }
+            | TilesError::TileSide { .. }
+            | TilesError::SheetTooLarge { .. }
+            | TilesError::Families { .. } => Problem::Usage(sentence),
+            TilesError::PhotoTooSmall { .. }
+            | TilesError::UnevenGrid { .. }
+            | TilesError::SizesDiffer { .. }
+            | TilesError::NotSquare { .. }
+            | TilesError::Codes { .. } => Problem::Input(sentence),
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! The minimum cut of a grid: which texels to take from which of two pictures.
+//!
+//! Texels are the nodes, neighbours are linked both ways, and a texel may be pulled to either side.
+//! The cut of least cost is where the maximum flow from the first side to the second is full
+//! (Kwatra et al. 2003, "Graphcut Textures"). The flow is found by blocking flows of shortest paths
+//! (Dinic 1970), in integers, so the cut is exact and the same on every machine. Of several cuts of
+//! one cost it is the one nearest to the first side.
+
+use std::collections::VecDeque;
+
+/// What holds a texel on its side: never cut.
+pub const FIXED: u32 = u32::MAX;
+
+/// The dearest link. Two directions of it must fit a word together.
+pub const MAX_LINK: u32 = 1 << 30;
+
+/// What it costs to put a texel on the other side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pull {
+    /// Lost if the texel is on the second side.
+    pub to_first: u32,
+    /// Lost if the texel is on the first side.
+    pub to_second: u32,
+}
+
+impl Pull {
+    /// Only the first side.
+    pub const FIRST: Pull = Pull { to_first: FIXED, to_second: 0 };
+    /// Only the second side.
+    pub const SECOND: Pull = Pull { to_first: 0, to_second: FIXED };
+}
+
+/// A minimum cut.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cut {
+    /// Whether a texel is on the first side, row by row.
+    pub is_first: Vec<bool>,
+    /// What the cut links and pulls cost.
+    pub cost: u64,
+}
+
+/// Neighbours: right, below, left, above. The opposite of d is d ^ 2.
+const DIRECTIONS: [usize; 4] = [0, 1, 2, 3];
+
+/// Cuts a grid of `width` × `height` texels. `link(a, b)` is what it costs to part the neighbours
+/// with the indices a and b, at most [`MAX_LINK`].
+pub fn minimum(
+    [width, height]: [usize; 2],
+    link: impl Fn(usize, usize) -> u32,
+    pull: impl Fn(usize) -> Pull,
+) -> Cut {
+    let mut flow = Flow::new([width, height], link, pull);
+    while flow.find_levels() {
+        for root in 0..width * height {
+            flow.push_from(root);
+        }
+    }
+    // What can still be reached has a level.
+    Cut { is_first: flow.level.iter().map(|level| *level != UNREACHED).collect(), cost: flow.total }
+}
+
+const UNREACHED: u32 = u32::MAX;
+
+struct Flow {
+    size: [usize; 2],
+    /// What the link to each neighbour still takes.
+    room: Vec<[u32; 4]>,
+    /// What still comes in from the first side, and goes out to the second.
+    from_first: Vec<u32>,
+    to_second: Vec<u32>,
+    /// Links from the first side.
+    level: Vec<u32>,
+    /// The neighbour to be tried next.
+    next: Vec<u8>,
+    /// The flow so far.
+    total: u64,
+}
+
+impl Flow {
+    fn new(
+        size: [usize; 2],
+        link: impl Fn(usize, usize) -> u32,
+        pull: impl Fn(usize) -> Pull,
+    ) -> Flow {
+        let [width, height] = size;
+        let count = width * height;
+        let mut flow = Flow {
+            size,
+            room: vec![[0; 4]; count],
+            from_first: vec![0; count],
+            to_second: vec![0; count],
+            level: vec![UNREACHED; count],
+            next: vec![0; count],
+            total: 0,
+        };
+        for node in 0..count {
+            flow.pull(node, pull(node));
+            for direction in [0, 1] {
+                if let Some(other) = flow.neighbour(node, direction) {
+                    let cost = link(node, other).min(MAX_LINK);
+                    flow.room[node][direction] = cost;
+                    flow.room[other][direction ^ 2] = cost;
+                }
+            }
+        }
+        flow
+    }
+
+    /// What both sides pull goes straight through.
+    fn pull(&mut self, node: usize, Pull { to_first, to_second }: Pull) {
+        let through = to_first.min(to_second);
+        self.total += u64::from(through);
+        self.from_first[node] = if to_first == FIXED { FIXED } else { to_first - through };
+        self.to_second[node] = if to_second == FIXED { FIXED } else { to_second - through };
+    }
+
+    fn neighbour(&self, node: usize, direction: usize) -> Option<usize> {
+        let [width, height] = self.size;
+        let (x, y) = (node % width, node / width);
+        match direction {
+            0 => (x + 1 < width).then(|| node + 1),
+            1 => (y + 1 < height).then(|| node + width),
+            2 => (x > 0).then(|| node - 1),
+            _ => (y > 0).then(|| node - width),
+        }
+    }
+
+    /// Finds how far each texel is from the first side; whether the second side can be reached.
+    fn find_levels(&mut self) -> bool {
+        self.level.fill(UNREACHED);
+        self.next.fill(0);
+        let roots = (0..self.level.len()).filter(|node| self.from_first[*node] > 0);
+        let mut queue: VecDeque<usize> = roots.collect();
+        for root in &queue {
+            self.level[*root] = 0;
+        }
+        let mut is_reached = false;
+        while let Some(node) = queue.pop_front() {
+            // Nothing beyond: a path ends here.
+            if self.to_second[node] > 0 {
+                is_reached = true;
+                continue;
+            }
+            for direction in DIRECTIONS {
+                let Some(other) = self.neighbour(node, direction) else { continue };
+                if self.room[node][direction] > 0 && self.level[other] == UNREACHED {
+                    self.level[other] = self.level[node] + 1;
+                    queue.push_back(other);
+                }
+            }
+        }
+        is_reached
+    }
+
+    /// Pushes all that fits along paths of rising levels from a texel of the first side.
+    fn push_from(&mut self, root: usize) {
+        let mut path: Vec<(usize, usize)> = Vec::new();
+        let mut node = root;
+        while self.from_first[root] > 0 {
+            if self.to_second[node] > 0 {
+                node = self.augment(root, &mut path, node);
+            } else if let Some((direction, other)) = self.step(node) {
+                path.push((node, direction));
+                node = other;
+            } else {
+                // A dead end: its predecessor tries the next neighbour.
+                let Some((last, _)) = path.pop() else { return };
+                self.next[last] += 1;
+                node = last;
+            }
+        }
+    }
+
+    /// The next step to a higher level that has room.
+    fn step(&mut self, node: usize) -> Option<(usize, usize)> {
+        while let Some(direction) = DIRECTIONS.get(usize::from(self.next[node])).copied() {
+            let other = self.neighbour(node, direction).filter(|other| {
+                self.room[node][direction] > 0 && self.level[*other] == self.level[node].saturating_add(1)
+            });
+            if let Some(other) = other {
+                return Some((direction, other));
+            }
+            self.next[node] += 1;
+        }
+        None
+    }
+
+    /// Pushes along a whole path and goes back to where it is full first.
+    fn augment(&mut self, root: usize, path: &mut Vec<(usize, usize)>, end: usize) -> usize {
+        let room = path.iter().map(|(node, direction)| self.room[*node][*direction]).min();
+        let amount = room.unwrap_or(FIXED).min(self.from_first[root]).min(self.to_second[end]);
+        self.total += u64::from(amount);
+        for pulled in [&mut self.from_first[root], &mut self.to_second[end]] {
+            if *pulled != FIXED {
+                *pulled -= amount;
+            }
+        }
+        let mut full = path.len();
+        for (i, (node, direction)) in path.iter().copied().enumerate().rev() {
+            self.room[node][direction] -= amount;
+            if let Some(other) = self.neighbour(node, direction) {
+                self.room[other][direction ^ 2] += amount;
+            }
+            if self.room[node][direction] == 0 {
+                full = i;
+            }
+        }
+        let node = path.get(full).map_or(end, |(node, _)| *node);
+        path.truncate(full);
+        node
+    }
+}

@@ -1,0 +1,56 @@
+//! Light and shade of a photograph: its means over squares.
+
+use super::Bitmap;
+
+/// The sums of a picture's channels over all rectangles from its first texel.
+pub struct Levels {
+    width: usize,
+    height: usize,
+    /// One row and one column more than the picture.
+    sums: Vec<[u64; 3]>,
+}
+
+impl Levels {
+    /// Sums up a picture.
+    pub fn new(picture: &Bitmap) -> Levels {
+        let [width, height] = picture.size().map(|side| side as usize);
+        let mut sums = vec![[0; 3]; (width + 1) * (height + 1)];
+        for (y, row) in picture.texels().chunks(width).enumerate() {
+            let mut sum = [0; 3];
+            for (x, texel) in row.iter().enumerate() {
+                for channel in 0..3 {
+                    sum[channel] += u64::from(texel[channel]);
+                    let above = sums[y * (width + 1) + x + 1][channel];
+                    sums[(y + 1) * (width + 1) + x + 1][channel] = above + sum[channel];
+                }
+            }
+        }
+        Levels { width, height, sums }
+    }
+
+    /// The mean of a rectangle, cut to the picture; in levels.
+    pub fn mean(&self, from: [i64; 2], size: [i64; 2]) -> [f32; 3] {
+        let clip = |at: i64, most: usize| at.clamp(0, most as i64) as usize;
+        let (left, right) = (clip(from[0], self.width), clip(from[0] + size[0], self.width));
+        let (top, bottom) = (clip(from[1], self.height), clip(from[1] + size[1], self.height));
+        let count = ((right - left) * (bottom - top)).max(1) as f32;
+        let at = |x: usize, y: usize| self.sums[y * (self.width + 1) + x];
+        let corners = [at(right, bottom), at(left, top), at(left, bottom), at(right, top)];
+        [0, 1, 2].map(|i| {
+            let [all, before, left, above] = corners.map(|corner| corner[i]);
+            (all + before - left - above) as f32 / count
+        })
+    }
+
+    /// The mean of the whole picture.
+    pub fn whole(&self) -> [f32; 3] {
+        self.mean([0, 0], [self.width as i64, self.height as i64])
+    }
+
+    /// How far the mean of a rectangle is from that of the picture: the sum of its channels, in
+    /// levels. What is light or dark as a whole is seen again wherever it is repeated.
+    pub fn stands_out(&self, from: [i64; 2], size: [i64; 2]) -> f32 {
+        let (here, whole) = (self.mean(from, size), self.whole());
+        here.iter().zip(whole).map(|(here, whole)| (here - whole).abs()).sum()
+    }
+}
