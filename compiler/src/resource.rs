@@ -9,6 +9,7 @@ use crate::graph::{Constant, FunctionId, Scalar, Texel, View, ViewDimension};
 use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, Stop, Wrap};
 
 mod materials;
+pub mod pixel_map;
 mod probability;
 
 /// A resource of a program: one constructor call.
@@ -375,6 +376,22 @@ pub static KINDS: &[Kind] = &[
         make: make_indices,
     },
     Kind {
+        name: "pixel_map",
+        constructor: "(path: text, block: int = 16, levels: int = 2) -> pixel_map",
+        doc: "A large map of which only the blocks are stored that hold more than one number.",
+        gives: None,
+        fields: &[
+            Field { name: "blocks", kind: FieldKind::View(INTEGERS) },
+            Field { name: "pool", kind: FieldKind::View(INTEGERS) },
+            Field { name: "block", kind: FieldKind::Constant },
+            Field { name: "levels", kind: FieldKind::Constant },
+            Field { name: "depth", kind: FieldKind::Constant },
+            Field { name: "across", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: pixel_map::make,
+    },
+    Kind {
         name: "ramp",
         constructor: "(stops: stops, space: linear | srgb | oklab = oklab) -> ramp",
         doc: "A ramp of colours, filtered by how far its place spreads.",
@@ -407,7 +424,7 @@ pub fn made_by(row: usize) -> usize {
 }
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites", "positions", "pixel_map"];
+pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites", "positions"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(a.wrap())?;

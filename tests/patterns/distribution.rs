@@ -271,3 +271,16 @@ fn the_mean_of_a_material_is_that_of_what_it_draws() {
         }
     }
 }
+
+#[test]
+fn a_pixel_map_holds_the_numbers_of_its_picture() {
+    let number = |map: &str, at: &str| {
+        let file = "tiles/source/grass_grey.png";
+        let drawing = Drawing::of(&format!(
+            "let m = {map}(\"{file}\", levels: 11)\n\
+             texture t(uv: vec2) -> (number: float) {{ number = float(m.{at}(ifloor(uv * 700.0) - 50)) }}"
+        ));
+        drawing.cells(700)
+    };
+    assert_eq!(number("pixel_map", "at_texel"), number("indices", "at"));
+}

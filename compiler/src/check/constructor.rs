@@ -26,6 +26,12 @@ impl<'a> Checker<'a> {
     ) -> Wire {
         let mut values = Vec::new();
         for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
+            if let Wire::List(items) = wire
+                && let Some(Wire::Word(word)) =
+                    items.iter().map(|(item, _)| item).find(|item| matches!(item, Wire::Word(_)))
+            {
+                return self.unknown_value(f, &word.text, word.place);
+            }
             match argument(f, &self.resources, input, wire, *at) {
                 Ok(argument) => values.push((input.name.text.to_string(), *at, argument)),
                 Err(diagnostic) => return self.report(f, diagnostic),

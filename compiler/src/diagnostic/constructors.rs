@@ -8,6 +8,13 @@ pub fn out_of_bounds(place: Place, what: &str, found: i32, low: i32, high: i32) 
         .help(format!("choose a number from {low} to {high}"))
 }
 
+/// A number that must be a power of two.
+pub fn no_power_of_two(place: Place, what: &str, found: u32) -> Diagnostic {
+    let message = format!("`{what}` is {found}, which is no power of two");
+    let (below, above) = (1 << found.max(1).ilog2(), 2 << found.max(1).ilog2());
+    Diagnostic::new("E0551", place, message, "this number").help(format!("choose {below} or {above}"))
+}
+
 /// A grid without cells.
 pub fn empty_grid(place: Place, columns: i32, rows: i32) -> Diagnostic {
     Diagnostic::new("E0552", place, format!("a grid of {columns} × {rows} has no cells"), "this grid")

@@ -64,6 +64,19 @@ pub fn uneven_grid(place: Place, path: &str, size: [u32; 2], grid: [u32; 2]) -> 
     .help(format!("crop the picture to {}×{}, or change `grid`", fit(width, columns), fit(height, rows)))
 }
 
+/// A map whose blocks would be cut off at its edges.
+pub fn uneven_blocks(place: Place, path: &str, size: [u32; 2], block: u32) -> Diagnostic {
+    let [width, height] = size;
+    let fit = |texels: u32| texels.div_ceil(block.max(1)) * block;
+    Diagnostic::new(
+        "E0507",
+        place,
+        format!("blocks of {block} do not divide `{path}`, which has {width}×{height} texels"),
+        "every block must have the same whole number of texels",
+    )
+    .help(format!("extend the picture to {}×{}, or change `block`", fit(width), fit(height)))
+}
+
 /// Files of one resource that differ in size.
 pub fn sizes_differ(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2])) -> Diagnostic {
     let (path, [width, height]) = first;

@@ -78,6 +78,19 @@ pub enum Recipe {
         /// given as a list must be below it.
         levels: u32,
     },
+    /// A map of small numbers of which blocks of one number are not stored. Field `blocks`: a texel for
+    /// each block, -1 - n where all of it is n, else the number i of its texels in field `pool`. There
+    /// block i begins at texel (i % across · t, i / across), where t = ⌈block²·depth / 128⌉ texels hold
+    /// a block and across = ⌊4096 / t⌋: its numbers row by row, `depth` bits each from the lowest on,
+    /// in 4 words of 32 bits a texel. `depth` is 1, 2, 4 or 8, the least that holds the levels.
+    PixelMap {
+        /// A grey picture whose sides are multiples of the block.
+        path: String,
+        /// Texels along a side of a block, a power of two from 4 to 64.
+        block: u32,
+        /// M, 2 to 256: the grey range is cut into M equal steps, numbered from 0 (black).
+        levels: u32,
+    },
     /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
     /// the r-th of these resources; the width is that of the longest.
     Tables {

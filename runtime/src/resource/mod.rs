@@ -11,6 +11,7 @@ mod indices;
 mod materials;
 mod patterns;
 mod permutation;
+pub mod pixel_map;
 mod probability;
 pub(crate) mod pyramid;
 mod ramp;
@@ -109,6 +110,7 @@ fn make(
         Recipe::Probability { .. } => Ok(Vec::new()),
         Recipe::Materials { items, size, .. } => materials::make(project, place, items, *size, known),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+        Recipe::PixelMap { path, block, levels } => pixel_map::make(project, place, path, *block, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
         Recipe::Tables { rows } => tables::make(place, rows, known),
         // Made by rendering its pass.

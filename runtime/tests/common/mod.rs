@@ -84,6 +84,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Materials { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
         Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
+        Recipe::PixelMap { .. } => ("blocks", ViewDimension::D2, SampleKind::Int),
         Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),
         Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
     };
