@@ -21,14 +21,17 @@ pub fn run(args: &Check, problems: &mut Problems) -> Result<(), Problem> {
     if let Some(most) = args.max.filter(|most| report.facing.max > *most) {
         let max = report.facing.max;
         let sheet = args.sheet.display();
-        problems.show(&Problem::Input(format!("facing edges of `{sheet}` differ by {max} levels, {most} are allowed")));
+        problems.show(&Problem::Input(format!(
+            "facing edges of `{sheet}` differ by {max} levels, {most} are allowed"
+        )));
     }
     Ok(())
 }
 
 fn text(report: &Report) -> String {
     let [width, height] = report.size;
-    let mut text = format!("{} tiles of {width}×{height} texels, differences in 8-bit sRGB levels:\n", report.tiles);
+    let mut text =
+        format!("{} tiles of {width}×{height} texels, differences in 8-bit sRGB levels:\n", report.tiles);
     let _ = writeln!(text, "{:<44}{:>6}{:>9}", "", "max", "mean");
     line(&mut text, &format!("facing texels of {} pairs of edges", report.pairs), report.facing);
     line(&mut text, "neighbouring texels inside tiles", report.inside);

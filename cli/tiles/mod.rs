@@ -10,8 +10,8 @@ use crate::output;
 use crate::problem::{Problem, Report};
 use args::{Tiles, TilesCommand};
 use std::path::Path;
-use texgraph_compiler::module::{Source, Sources};
 use texgraph_compiler::Failure;
+use texgraph_compiler::module::{Source, Sources};
 use texgraph_runtime::tiles::{Bitmap, TilesError};
 
 /// Runs the subcommand.

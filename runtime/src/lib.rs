@@ -10,6 +10,7 @@
 //! [`render::Scene`] many of them. What a program [`bake`]s is drawn on the way. The GPU is the
 //! feature `gpu`; without it everything else stays.
 
+pub mod animation;
 pub mod bake;
 pub mod cpu;
 #[cfg(feature = "gpu")]

@@ -75,7 +75,8 @@ pub fn check(sheet: &Bitmap, grid: [u32; 2], families: u32) -> Result<Report, Ti
         return Err(TilesError::Codes { grid, families });
     }
     let tiles = sheet.tiles(grid)?;
-    let edges: Vec<Edges> = (0..).zip(&tiles).map(|(i, tile)| Edges::new(tile, Corners::of(i, families))).collect();
+    let edges: Vec<Edges> =
+        (0..).zip(&tiles).map(|(i, tile)| Edges::new(tile, Corners::of(i, families))).collect();
     let found: Vec<(Edge, u64, Vec<Pair>)> =
         (0..edges.len()).into_par_iter().map(|first| beside(&edges, first)).collect();
     let mut report = Report {
@@ -131,7 +132,10 @@ impl Edges {
         let column = |x: u32| (0..height).map(|y| seen(tile.texel(x, y))).collect();
         let row = |y: u32| (0..width).map(|x| seen(tile.texel(x, y))).collect();
         let ([left, right], [top, bottom]) = (corners.left_right(), corners.top_bottom());
-        Edges { texels: [column(0), column(width - 1), row(0), row(height - 1)], codes: [left, right, top, bottom] }
+        Edges {
+            texels: [column(0), column(width - 1), row(0), row(height - 1)],
+            codes: [left, right, top, bottom],
+        }
     }
 }
 

@@ -77,11 +77,7 @@ struct Flow {
 }
 
 impl Flow {
-    fn new(
-        size: [usize; 2],
-        link: impl Fn(usize, usize) -> u32,
-        pull: impl Fn(usize) -> Pull,
-    ) -> Flow {
+    fn new(size: [usize; 2], link: impl Fn(usize, usize) -> u32, pull: impl Fn(usize) -> Pull) -> Flow {
         let [width, height] = size;
         let count = width * height;
         let mut flow = Flow {

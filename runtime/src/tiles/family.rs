@@ -106,13 +106,7 @@ struct Candidate {
 }
 
 /// The places of the tiles: cheap ones that share little with each other.
-fn choose(
-    photo: &Bitmap,
-    frame: &Bitmap,
-    geometry: Geometry,
-    count: u32,
-    seed: u32,
-) -> Vec<([u32; 2], Cut)> {
+fn choose(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, count: u32, seed: u32) -> Vec<([u32; 2], Cut)> {
     let mut random = Random::new(seed, 1);
     let mut place = || photo.size().map(|side| random.below(side - geometry.side as u32 + 1));
     let tried = (count * CANDIDATES_PER_TILE).max(LEAST_CANDIDATES);

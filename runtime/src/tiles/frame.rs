@@ -100,7 +100,8 @@ impl<'a> Plus<'a> {
             let width = 2 * geometry.band + 1;
             let both = |node: usize| {
                 let [along, across] = [node / width, node % width];
-                [along + geometry.period, along].map(|along| arm(photo, geometry, crossing, axis, [along, across]))
+                [along + geometry.period, along]
+                    .map(|along| arm(photo, geometry, crossing, axis, [along, across]))
             };
             let link = |a: usize, b: usize| {
                 let ([tail, head], [next_tail, next_head]) = (both(a), both(b));

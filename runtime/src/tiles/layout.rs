@@ -6,7 +6,8 @@ use super::glyphs::{HEIGHT, Number};
 use super::{TilesError, check_sheet};
 
 /// What stands for each family.
-const COLORS: [Texel; 4] = [[236, 220, 176, 255], [150, 196, 132, 255], [142, 186, 222, 255], [214, 160, 186, 255]];
+const COLORS: [Texel; 4] =
+    [[236, 220, 176, 255], [150, 196, 132, 255], [142, 186, 222, 255], [214, 160, 186, 255]];
 
 const INK: Texel = [32, 32, 40, 255];
 
@@ -29,7 +30,8 @@ pub fn layout(families: u32, side: u32) -> Result<Bitmap, TilesError> {
 
 fn tile(index: u32, families: u32, side: u32) -> Bitmap {
     let Corners(codes) = Corners::of(index, families);
-    let mut labels: Vec<Label> = (0..4).map(|corner| Label::at_corner(codes[corner as usize], corner, side)).collect();
+    let mut labels: Vec<Label> =
+        (0..4).map(|corner| Label::at_corner(codes[corner as usize], corner, side)).collect();
     if side >= WITH_INDEX {
         labels.push(Label::in_middle(index, side));
     }

@@ -119,7 +119,11 @@ impl fmt::Display for TilesError {
                 }
             }
             TilesError::Count { grid: [columns, rows] } => {
-                write!(f, "a sheet has 1 to {MAX_TILES} tiles; {columns}×{rows} are {}", count([*columns, *rows]))
+                write!(
+                    f,
+                    "a sheet has 1 to {MAX_TILES} tiles; {columns}×{rows} are {}",
+                    count([*columns, *rows])
+                )
             }
             TilesError::TileSide { side } => {
                 write!(f, "a tile has {} to {} texels a side, not {side}", SIDES.start(), SIDES.end())
@@ -134,7 +138,10 @@ impl fmt::Display for TilesError {
                 "a grid of {columns}×{rows} does not divide {width}×{height} texels into tiles of 2×2 or more"
             ),
             TilesError::SizesDiffer { sizes: [[w, h], [other_w, other_h]] } => {
-                write!(f, "the tiles of the first sheet have {w}×{h} texels, those of the second {other_w}×{other_h}")
+                write!(
+                    f,
+                    "the tiles of the first sheet have {w}×{h} texels, those of the second {other_w}×{other_h}"
+                )
             }
             TilesError::NotSquare { size: [width, height] } => {
                 write!(f, "the tiles have {width}×{height} texels, but transitions need square ones")
