@@ -22,6 +22,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/resources.tex", include_str!("../std/resources.tex")),
     ("std/distribution.tex", include_str!("../std/distribution.tex")),
     ("std/materials.tex", include_str!("../std/materials.tex")),
+    ("std/positions.tex", include_str!("../std/positions.tex")),
     ("std/noise.tex", include_str!("../std/noise.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),

@@ -10,6 +10,7 @@ use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, St
 
 mod materials;
 pub mod pixel_map;
+mod positions;
 mod probability;
 
 /// A resource of a program: one constructor call.
@@ -87,6 +88,9 @@ pub enum FieldKind {
     Row,
     /// A number known from the arguments.
     Constant,
+    /// A texture that belongs to the resource that the constructor was given, where it is the field of
+    /// the same name.
+    Lent(View),
     /// The resource itself seen as one of another kind, by its name: the views and constants of that
     /// kind's fields are those of the same name, but for its `count`, which is named here. There is
     /// none where that is 0.
@@ -99,7 +103,7 @@ impl FieldKind {
     /// The texture, if it is one.
     pub fn view(self) -> Option<View> {
         match self {
-            FieldKind::View(view) => Some(view),
+            FieldKind::View(view) | FieldKind::Lent(view) => Some(view),
             FieldKind::Row => Some(SHARED),
             FieldKind::Constant | FieldKind::Texel(..) | FieldKind::As(..) => None,
         }
@@ -114,6 +118,8 @@ pub struct Made {
     pub constants: Vec<(&'static str, Constant)>,
     /// How the views are sampled.
     pub sampler: Option<SamplerState>,
+    /// The resource whose textures are lent.
+    pub lender: Option<u32>,
 }
 
 /// The arguments of a constructor call, defaults filled in.
@@ -272,11 +278,15 @@ impl Arguments {
 
 const PIXELS: View = View { dimension: ViewDimension::D2, texel: Texel::Sampled, anisotropy: 1 };
 const LAYERS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Sampled, anisotropy: 1 };
+const MAPS: View = View { dimension: ViewDimension::D2Array, texel: Texel::Integer, anisotropy: 1 };
 const INTEGERS: View = View { dimension: ViewDimension::D2, texel: Texel::Integer, anisotropy: 1 };
 
 /// The texture that small tables of ints share, a row each: a graph stays inside the number of
 /// textures that a shader may read.
 pub const SHARED: View = INTEGERS;
+
+/// The constant that says how a resource's views are sampled, where that is more than once.
+pub const ANISOTROPY: &str = "anisotropy";
 
 /// The longest side of a bake: what every GPU can hold.
 const MAX_BAKE: i32 = 8192;
@@ -376,6 +386,24 @@ pub static KINDS: &[Kind] = &[
         make: make_indices,
     },
     Kind {
+        name: "positions",
+        constructor: "(path: text, grid: ivec2, patterns: patterns, layers: int = 1) -> positions",
+        doc: "Patterns at places of their own, which can change while the program runs.",
+        gives: None,
+        fields: &[
+            Field { name: "cells", kind: FieldKind::View(MAPS) },
+            Field { name: "layers", kind: FieldKind::Lent(LAYERS) },
+            Field { name: "means", kind: FieldKind::Lent(PIXELS) },
+            Field { name: "patterns", kind: FieldKind::As("patterns", "tiles") },
+            Field { name: "grid", kind: FieldKind::Constant },
+            Field { name: "most", kind: FieldKind::Constant },
+            Field { name: "tiles", kind: FieldKind::Constant },
+            Field { name: "linear", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: positions::make,
+    },
+    Kind {
         name: "pixel_map",
         constructor: "(path: text, block: int = 16, levels: int = 2) -> pixel_map",
         doc: "A large map of which only the blocks are stored that hold more than one number.",
@@ -424,7 +452,7 @@ pub fn made_by(row: usize) -> usize {
 }
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites", "positions"];
+pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites"];
 
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(a.wrap())?;
@@ -433,6 +461,7 @@ fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::Image { path, encoding: a.encoding() },
         constants: Vec::new(),
         sampler: Some(sampler),
+        lender: None,
     })
 }
 
@@ -453,6 +482,7 @@ fn make_bake(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::Bake { size: size.map(|side| side as u32), format },
         constants: Vec::new(),
         sampler: Some(SamplerState { wrap: a.wrap(), filter: a.filter(), anisotropy: 1 }),
+        lender: None,
     })
 }
 
@@ -485,6 +515,7 @@ fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
         ],
         // The library's nodes take the taps, so that they reach other patterns.
         sampler: Some(SamplerState { anisotropy: 1, ..sampler }),
+        lender: None,
     })
 }
 
@@ -508,6 +539,7 @@ fn make_ramp(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::Ramp { stops, space },
         constants: ends.map(|(name, at)| (name, Constant::floats(&[at]))).into(),
         sampler: Some(SamplerState { wrap: Wrap::Clamp, filter: Filter::Linear, anisotropy: 1 }),
+        lender: None,
     })
 }
 
@@ -517,6 +549,7 @@ fn make_permutation(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::Permutation { size, seed: a.int("seed") },
         constants: vec![("size", Constant::ints(&[size as i32]))],
         sampler: None,
+        lender: None,
     })
 }
 
@@ -530,6 +563,7 @@ fn make_indices(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::Indices { source, levels },
         constants: vec![("levels", Constant::ints(&[levels as i32]))],
         sampler: None,
+        lender: None,
     })
 }
 

@@ -102,10 +102,26 @@ fn checked_table<'a>(resource: &'a Resource, texture: &'a Texture) -> Result<&'a
     texture.table.as_ref().filter(is_right).filter(|_| limits(*format).is_some()).ok_or_else(broken)
 }
 
+/// Has the bakes drawn again that read a resource, themselves or through others, in their order.
+pub(crate) fn forget<'b, 'a: 'b>(bakes: impl Iterator<Item = &'b mut Bake<'a>>, resource: usize) {
+    let mut changed = vec![resource];
+    for bake in bakes {
+        if bake.reads(&changed) {
+            bake.drawn = None;
+            changed.push(bake.resource);
+        }
+    }
+}
+
 impl Bake<'_> {
     /// Whether its texels are other ones for these params than when it was last drawn.
     pub fn is_stale(&self, settings: &Settings) -> bool {
         self.drawn.as_ref() != Some(&self.values(settings))
+    }
+
+    /// Whether it reads one of these resources.
+    fn reads(&self, resources: &[usize]) -> bool {
+        self.pass.described.reads.iter().any(|(resource, _)| resources.contains(&(*resource as usize)))
     }
 
     /// Whether it is the same for all params.

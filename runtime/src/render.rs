@@ -20,6 +20,7 @@ use crate::cpu;
 use crate::gpu::{self, Gpu, Preference};
 use crate::picture::{Content, Picture};
 use crate::resource::Tables;
+use crate::resource::positions::Write;
 use crate::settings::Settings;
 use crate::uniform::Draw;
 use texgraph_compiler::Program;
@@ -228,6 +229,20 @@ impl Scene<'_> {
             #[cfg(feature = "gpu")]
             Scene::Gpu(scene) => scene.render(request, progress),
             Scene::Cpu(scene) => scene.render(request, progress),
+        }
+    }
+
+    /// Writes texels of a field of a resource, an index into the manifest's `resources`: what a
+    /// [`positions`](crate::resource::positions) map says has changed, in its field `cells`. Bakes that
+    /// read it are drawn again with the next picture.
+    ///
+    /// # Errors
+    /// The program reads no such texture, or a write lies outside it.
+    pub fn write(&mut self, resource: usize, field: &str, writes: &[Write<'_>]) -> Result<(), RenderError> {
+        match self {
+            #[cfg(feature = "gpu")]
+            Scene::Gpu(scene) => scene.write(resource, field, writes),
+            Scene::Cpu(scene) => scene.write(resource, field, writes),
         }
     }
 

@@ -4,6 +4,8 @@
 #[path = "gpu/bakes.rs"]
 mod bakes;
 mod common;
+#[path = "gpu/positions.rs"]
+mod positions;
 #[path = "gpu/threads.rs"]
 mod threads;
 
@@ -43,6 +45,7 @@ const TESTS: &[(&str, Test)] = &[
     ("bakes_are_drawn_again_only_for_their_params", bakes::bakes_are_drawn_again_only_for_their_params),
     ("values_out_of_range_are_stored_alike", bakes::values_out_of_range_are_stored_alike),
     ("a_broken_bake_is_an_error_with_its_name", bakes::a_broken_bake_is_an_error_with_its_name),
+    ("edited_positions_agree", positions::edited_positions_agree),
     ("pictures_are_read_back_from_many_threads", threads::pictures_are_read_back_from_many_threads),
     ("a_compiled_program_agrees", a_compiled_program_agrees),
     ("tiles_have_no_seams", tiles_have_no_seams),

@@ -5,9 +5,11 @@ use super::head::Head;
 use super::wire::{ResourceWire, Wire};
 use super::{Checker, Frame, ResourceFields};
 use crate::diagnostic::{Diagnostic, Place, constructors, nodes as sentences};
-use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Type, View, ViewId};
+use crate::graph::{Constant, FunctionId, ResourceView, Scalar, Texel, Type, View, ViewId};
 use crate::manifest::{Recipe, Stop};
-use crate::resource::{Argument, Arguments, Field, FieldKind, KINDS, Made, Part, Resource, SHARED, made_by};
+use crate::resource::{
+    ANISOTROPY, Argument, Arguments, Field, FieldKind, KINDS, Made, Part, Resource, SHARED, made_by,
+};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Input, TypeKind};
 
@@ -81,6 +83,7 @@ impl<'a> Checker<'a> {
                         views.push(ViewId(self.views.len() as u32));
                         self.views.push(ResourceView { resource: resource as u32, field: field.name, view });
                     }
+                    FieldKind::Lent(_) => views.extend(self.lent(made.lender, field.name)),
                     FieldKind::Row => {
                         self.rows.push(resource as u32);
                         let row = Constant::ints(&[self.rows.len() as i32 - 1]);
@@ -102,6 +105,12 @@ impl<'a> Checker<'a> {
             resource
         });
         self.resource_value(f, resource)
+    }
+
+    /// The view of another resource's field.
+    fn lent(&self, lender: Option<u32>, name: &str) -> Option<ViewId> {
+        let views = &self.resource_wires.get(lender? as usize)?.views;
+        views.iter().copied().find(|id| self.views.get(id.0 as usize).is_some_and(|view| view.field == name))
     }
 
     /// The texture that small tables share. The resource behind it is made at the end, when all its
@@ -231,6 +240,7 @@ fn argument(
         },
         Wire::Node(_) => Ok(Argument::Node),
         Wire::None => Ok(Argument::Absent),
+        Wire::Resource(_) => part(made, name, wire, place).map(|part| Argument::Resources(vec![part])),
         Wire::List(items) if is_named(input, "numbers") => numbers(f, name, items),
         Wire::List(items) if is_named(input, "resources") => {
             let parts = items.iter().map(|(wire, at)| part(made, name, wire, *at));
@@ -349,11 +359,11 @@ fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, D
         .collect()
 }
 
-/// The constant that says how a resource's views are sampled, where that is more than once.
-const ANISOTROPY: &str = "anisotropy";
-
 /// A view of a resource with these constants.
 pub fn with_anisotropy(view: View, constants: &[(&'static str, Constant)]) -> View {
+    if view.texel == Texel::Integer {
+        return view;
+    }
     let found = constants.iter().find(|(name, _)| *name == ANISOTROPY);
     View { anisotropy: found.map_or(1, |(_, n)| n.int(0).clamp(1, 16) as u8), ..view }
 }

@@ -92,6 +92,8 @@ pub const PAGES: &[(&str, &str)] = &[
     ("E0511", include_str!("pages/E0511.md")),
     ("E0512", include_str!("pages/E0512.md")),
     ("E0513", include_str!("pages/E0513.md")),
+    ("E0514", include_str!("pages/E0514.md")),
+    ("E0515", include_str!("pages/E0515.md")),
     ("E0551", include_str!("pages/E0551.md")),
     ("E0552", include_str!("pages/E0552.md")),
     ("E0553", include_str!("pages/E0553.md")),

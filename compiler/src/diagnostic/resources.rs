@@ -148,3 +148,32 @@ pub fn not_grey(place: Place, path: &str, at: [u32; 2]) -> Diagnostic {
     )
     .help("save it as a grey picture")
 }
+
+/// A file that holds something other than sprites.
+pub fn not_sprites(place: Place, path: &str, reason: &str) -> Diagnostic {
+    Diagnostic::new(
+        "E0514",
+        place,
+        format!("`{path}` can't be read as a list of sprites"),
+        reason.replace('\n', " "),
+    )
+    .help("write `[(pattern: 3, at: (0.25, 0.5), scale: 0.8, turn: 0.125)]`")
+}
+
+/// A sprite that can't be.
+pub fn bad_sprite(place: Place, path: &str, number: usize, reason: &str) -> Diagnostic {
+    Diagnostic::new("E0514", place, format!("sprite {number} of `{path}` can't be placed"), reason)
+        .help("sprites are counted from 0; patterns are those of `patterns:`")
+}
+
+/// Two sprites that want one cell.
+pub fn cell_taken(place: Place, path: &str, sprites: [usize; 2], cell: [u32; 2], layers: u32) -> Diagnostic {
+    let ([first, second], [x, y]) = (sprites, cell);
+    Diagnostic::new(
+        "E0515",
+        place,
+        format!("sprites {first} and {second} of `{path}` want the cell in column {x}, row {y}"),
+        format!("a cell holds {layers}"),
+    )
+    .help(format!("write `layers: {}`, move one of them, or use a finer `grid`", layers + 1))
+}

@@ -91,6 +91,22 @@ pub enum Recipe {
         /// M, 2 to 256: the grey range is cut into M equal steps, numbered from 0 (black).
         levels: u32,
     },
+    /// Patterns at places of their own. Field `cells`, a texel for each cell and layer: the pattern's
+    /// number, or -1; where its middle lies from the cell's upper left corner, x in the lower and y in
+    /// the upper 16 bits, each (place + ½)·2¹⁵ in cells; the cosine and the sine of its turn, each over
+    /// its scale, times 2¹⁶. In the pattern a place p cells from that corner is
+    /// ½ + (c·d.x + s·d.y, c·d.y - s·d.x), where d = p - middle. A host may write texels while it draws.
+    Positions {
+        /// A RON list of sprites `(pattern: 3, at: (0.25, 0.5), scale: 0.8, turn: 0.125)`: the middle
+        /// in 0..1 across the grid, the side in cells, and the part of a full turn, clockwise.
+        path: String,
+        /// Cells across and down.
+        grid: [u32; 2],
+        /// Sprites that a cell may hold.
+        layers: u32,
+        /// The index of the resource that holds the patterns.
+        patterns: u32,
+    },
     /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
     /// the r-th of these resources; the width is that of the longest.
     Tables {

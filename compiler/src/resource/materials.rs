@@ -47,6 +47,7 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::Materials { items, families: families(a, parts.len())?, length, size },
         constants: fields.map(|(name, value)| (name, Constant::ints(&[value]))).into(),
         sampler: first.sampler,
+        lender: None,
     })
 }
 

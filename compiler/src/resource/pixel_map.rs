@@ -26,6 +26,7 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
         recipe: Recipe::PixelMap { path, block, levels },
         constants: fields.map(|(name, value)| (name, Constant::ints(&[value as i32]))).into(),
         sampler: None,
+        lender: None,
     })
 }
 

@@ -30,7 +30,7 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
     let greatest = numbers.iter().copied().max().unwrap_or(BLANK);
     let fields = [("size", numbers.len() as i32), ("least", least), ("reach", greatest + 1)];
     let constants = fields.map(|(name, value)| (name, Constant::ints(&[value]))).into();
-    Ok(Made { recipe: Recipe::Probability { numbers }, constants, sampler: None })
+    Ok(Made { recipe: Recipe::Probability { numbers }, constants, sampler: None, lender: None })
 }
 
 /// A list as it is written.

@@ -27,6 +27,7 @@ use crate::picture::{Content, Picture};
 use crate::progress::Progress;
 use crate::render::{RenderError, Request};
 use crate::resource::Tables;
+use crate::resource::positions::Write;
 use crate::settings::Settings;
 use draw::draw;
 use texgraph_compiler::Program;
@@ -97,6 +98,25 @@ impl<'a> Scene<'a> {
         let progress = progress.next(request.size);
         let pixels = draw(&self.pass, &self.graph, &self.textures, &request, &progress)?;
         Ok(Picture { size: request.size, pixels, content })
+    }
+
+    /// Writes texels of a field of a resource, an index into the manifest's `resources`. Bakes that
+    /// read it are drawn again with the next picture.
+    ///
+    /// # Errors
+    /// The program reads no such texture, or a write lies outside it.
+    pub fn write(&mut self, resource: usize, field: &str, writes: &[Write<'_>]) -> Result<(), RenderError> {
+        let views = self.pass.code.graph.views.iter().zip(&mut self.textures);
+        let mut found = views
+            .filter(|(view, _)| view.resource as usize == resource && view.field == field)
+            .map(|(_, texture)| texture)
+            .peekable();
+        let is_there = found.peek().is_some();
+        if !is_there || !found.all(|texture| writes.iter().all(|write| texture.patch(write).is_some())) {
+            return Err(RenderError::no_table(&self.program.manifest, resource, field));
+        }
+        bake::forget(self.bakes.iter_mut(), resource);
+        Ok(())
     }
 
     /// How many bakes have been drawn for all pictures so far.

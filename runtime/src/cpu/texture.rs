@@ -4,6 +4,7 @@ use super::mask::{Mask, lanes_of};
 use crate::bake::Bake;
 use crate::pass::Pass;
 use crate::render::RenderError;
+use crate::resource::positions::Write;
 use crate::resource::{Tables, srgb_to_linear};
 use glam::{IVec2, IVec4, Vec4};
 use half::f16;
@@ -52,6 +53,26 @@ impl Texture {
             filter: Filter::Nearest,
             texels: Texels::Int(vec![IVec4::ZERO]),
         }
+    }
+
+    /// Writes texels of level 0 of a map of ints; none where they do not fit.
+    pub fn patch(&mut self, write: &Write<'_>) -> Option<()> {
+        let (level, [x, y, layer]) = (*self.levels.first()?, write.origin.map(|i| i as usize));
+        let Texels::Int(texels) = &mut self.texels else { return None };
+        let (width, height) = (write.width as usize, write.height as usize);
+        let [columns, rows] = [level.size.x as usize, level.size.y as usize];
+        if x + width > columns || y + height > rows || layer >= level.layers as usize {
+            return None;
+        }
+        let texel_bytes = write.texel_bytes as usize;
+        for row in 0..height {
+            let first = row * write.bytes_per_row as usize;
+            let bytes = write.bytes.get(first..first + width * texel_bytes)?;
+            let Texels::Int(new) = ints(bytes, texel_bytes) else { return None };
+            let start = level.index(layer as i32) + (y + row) * columns + x;
+            texels.get_mut(start..start + width)?.copy_from_slice(&new);
+        }
+        Some(())
     }
 
     /// Texels of level 0, across and down.

@@ -10,6 +10,7 @@ use crate::picture::Picture;
 use crate::progress::Progress;
 use crate::render::{RenderError, Request};
 use crate::resource::Tables;
+use crate::resource::positions::Write;
 use crate::settings::Settings;
 use crate::uniform;
 use texgraph_compiler::Program;
@@ -77,6 +78,20 @@ impl<'a> Scene<'a> {
         self.refresh(&request.settings, &mut progress)?;
         self.drawing.draw(self.gpu, &request, &mut picture, &progress.next(request.size))?;
         Ok(picture)
+    }
+
+    /// Writes texels of a field of a resource, an index into the manifest's `resources`. Bakes that
+    /// read it are drawn again with the next picture.
+    ///
+    /// # Errors
+    /// The program reads no such texture, or a write lies outside it.
+    pub fn write(&mut self, resource: usize, field: &str, writes: &[Write<'_>]) -> Result<(), RenderError> {
+        self.gpu.guarded(|| {
+            let written = self.textures.patch(self.gpu, resource, field, writes);
+            written.ok_or_else(|| RenderError::no_table(&self.program.manifest, resource, field))
+        })?;
+        bake::forget(self.bakes.iter_mut().map(|(bake, _)| bake), resource);
+        Ok(())
     }
 
     /// How many bakes have been drawn for all pictures so far.

@@ -4,6 +4,7 @@ use super::Gpu;
 use crate::bake::Bake;
 use crate::render::RenderError;
 use crate::resource::Tables;
+use crate::resource::positions::Write;
 use std::collections::BTreeMap;
 use texgraph_compiler::manifest::{
     Filter, Format, Level, Manifest, Sampler, Table, Texture, ViewDimension, Wrap,
@@ -54,6 +55,31 @@ impl Textures {
         let uploaded = self.get(bake.resource, &bake.texture.field);
         let written = uploaded.and_then(|uploaded| write(gpu, uploaded, bake.table, texels));
         written.ok_or_else(|| RenderError::Gpu("a bake has no texture".to_owned()))
+    }
+}
+
+impl Textures {
+    /// Writes some texels of level 0; none where there is no such texture.
+    pub fn patch(&self, gpu: &Gpu, resource: usize, field: &str, writes: &[Write<'_>]) -> Option<()> {
+        let uploaded = self.get(resource, field)?;
+        for write in writes {
+            let [x, y, z] = write.origin;
+            let place = wgpu::TexelCopyTextureInfo {
+                texture: &uploaded.target,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x, y, z },
+                aspect: wgpu::TextureAspect::All,
+            };
+            let layout = wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(write.bytes_per_row),
+                rows_per_image: Some(write.height),
+            };
+            gpu.queue.write_texture(place, write.bytes, layout, extent(write.width, write.height, 1));
+        }
+        // On their way now, not with the next picture.
+        gpu.queue.submit([]);
+        Some(())
     }
 }
 

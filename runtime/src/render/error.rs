@@ -3,6 +3,7 @@
 use super::MAX_SIDE;
 use crate::resource::table;
 use std::fmt;
+use texgraph_compiler::manifest::Manifest;
 
 /// Why there is no picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +62,14 @@ pub enum RenderError {
     },
     /// The GPU or its driver failed.
     Gpu(String),
+}
+
+impl RenderError {
+    /// A field of a resource, by its index, is no texture that can be written so.
+    pub(crate) fn no_table(manifest: &Manifest, resource: usize, field: &str) -> RenderError {
+        let name = manifest.resources.get(resource).map_or(String::new(), |found| found.name.clone());
+        RenderError::NoTable { resource: name, field: field.to_owned() }
+    }
 }
 
 impl fmt::Display for RenderError {

@@ -123,7 +123,7 @@ impl PictureFile<'_> {
 }
 
 /// A file's problem in the compiler's words.
-fn unread(place: Place, path: &str, problem: Problem) -> Diagnostic {
+pub fn unread(place: Place, path: &str, problem: Problem) -> Diagnostic {
     match problem {
         Problem::Missing { near } => resources::missing_file(place, path, near.as_deref()),
         Problem::Outside { link } => resources::outside(place, path, link),

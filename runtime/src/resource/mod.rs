@@ -12,6 +12,7 @@ mod materials;
 mod patterns;
 mod permutation;
 pub mod pixel_map;
+pub mod positions;
 mod probability;
 pub(crate) mod pyramid;
 mod ramp;
@@ -110,6 +111,7 @@ fn make(
         Recipe::Probability { .. } => Ok(Vec::new()),
         Recipe::Materials { items, size, .. } => materials::make(project, place, items, *size, known),
         Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+        Recipe::Positions { .. } => positions::make(project, place, recipe, known),
         Recipe::PixelMap { path, block, levels } => pixel_map::make(project, place, path, *block, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
         Recipe::Tables { rows } => tables::make(place, rows, known),

@@ -3,6 +3,7 @@
 #![allow(dead_code)] // every test file uses its own part
 
 pub mod bakes;
+pub mod decals;
 pub mod folds;
 pub mod programs;
 
@@ -84,6 +85,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Materials { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
         Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
         Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
+        Recipe::Positions { .. } => ("cells", ViewDimension::D2Array, SampleKind::Int),
         Recipe::PixelMap { .. } => ("blocks", ViewDimension::D2, SampleKind::Int),
         Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),
         Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
