@@ -399,6 +399,8 @@ pub static KINDS: &[Kind] = &[
             Field { name: "most", kind: FieldKind::Constant },
             Field { name: "tiles", kind: FieldKind::Constant },
             Field { name: "linear", kind: FieldKind::Constant },
+            Field { name: "taps", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
         ],
         view: None,
         make: positions::make,

@@ -1,6 +1,6 @@
 //! `positions`: patterns at places of their own (Lefebvre & Neyret 2003, §3.1, explicit positioning).
 
-use super::{ANISOTROPY, Argument, Arguments, Made};
+use super::{Argument, Arguments, Made};
 use crate::diagnostic::{Diagnostic, constructors};
 use crate::graph::Constant;
 use crate::manifest::Recipe;
@@ -26,13 +26,14 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
     let [patterns] = a.parts("patterns") else {
         return Err(constructors::wrong_argument(a.place("patterns"), "patterns", "patterns"));
     };
-    let mut constants = vec![
+    let constants = vec![
         ("grid", Constant::ints(&grid)),
         ("most", Constant::ints(&[layers as i32])),
         ("tiles", Constant::ints(&[patterns.int("count")])),
         ("linear", Constant::ints(&[patterns.int("linear")])),
+        ("taps", Constant::ints(&[patterns.int("taps")])),
+        ("normals", Constant::ints(&[patterns.int("normals")])),
     ];
-    constants.extend(patterns.constants.iter().find(|(name, _)| *name == ANISOTROPY));
     let path = a.paths("path").into_iter().next().unwrap_or_default();
     let grid = grid.map(|side| side as u32);
     Ok(Made {
