@@ -39,6 +39,22 @@ pub struct Cut {
     pub cost: u64,
 }
 
+/// Texels to each side of a cut across which one picture fades into the other.
+const FADE: usize = 2;
+
+impl Cut {
+    /// The share of the first picture in a texel of a grid of this size, 0..1: that of the first side
+    /// in the square around it.
+    pub fn share(&self, [width, height]: [usize; 2], [x, y]: [usize; 2]) -> f32 {
+        let near = |at: usize, most: usize| at.saturating_sub(FADE)..(at + FADE + 1).min(most);
+        let rows = near(y, height).flat_map(|y| near(x, width).map(move |x| y * width + x));
+        let (first, all) = rows.fold((0u32, 0u32), |(first, all), node| {
+            (first + u32::from(self.is_first.get(node).copied().unwrap_or(false)), all + 1)
+        });
+        first as f32 / all.max(1) as f32
+    }
+}
+
 /// Neighbours: right, below, left, above. The opposite of d is d ^ 2.
 const DIRECTIONS: [usize; 4] = [0, 1, 2, 3];
 

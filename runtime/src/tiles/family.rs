@@ -7,7 +7,7 @@
 use super::bitmap::{Bitmap, Texel};
 use super::cut::{self, Cut, Pull};
 use super::frame::{Geometry, frame};
-use super::levels::Levels;
+use super::levels::{Levels, evened};
 use super::random::Random;
 use super::{SIDES, TilesError, check_sheet, seam};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -23,10 +23,10 @@ const CANDIDATES_PER_TILE: u32 = 8;
 const LEAST_CANDIDATES: u32 = 96;
 
 /// What a texel of the frame costs: what lies in the frame is seen in every tile.
-const THICKNESS: u32 = 8;
+const THICKNESS: u32 = 3;
 
 /// How much a level by which a place stands out counts, in costs of a texel of seam.
-const CALM: f32 = 8.0;
+const CALM: f32 = 0.5;
 
 /// How much sharing all of its place with another tile costs, in costs of the best place.
 const SHARED: f32 = 3.0;
@@ -40,6 +40,7 @@ impl Family {
     pub fn cut(photo: &Bitmap, side: u32, count: u32, seed: u32) -> Result<Family, TilesError> {
         check_photo(photo, side)?;
         let geometry = Geometry::new(side);
+        let photo = &evened(photo, side);
         let frame = frame(photo, geometry, &mut Random::new(seed, 0));
         let places = choose(photo, &frame, geometry, count, seed);
         let tiles = places.into_iter().map(|(place, cut)| tile(photo, &frame, geometry, place, &cut));
@@ -189,10 +190,15 @@ fn insert(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32;
     })
 }
 
+/// The tile of a cut: across it the place fades into the frame, but not on the edge.
 fn tile(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32; 2], cut: &Cut) -> Bitmap {
-    let side = geometry.side as u32;
-    Bitmap::new([side, side], |x, y| match cut.is_first[(y * side + x) as usize] {
-        true => frame.texel(x, y),
-        false => photo.texel(left + x, top + y),
+    let side = geometry.side;
+    Bitmap::new([side as u32; 2], |x, y| {
+        let (framed, inner) = (frame.texel(x, y), photo.texel(left + x, top + y));
+        match geometry.depth(x as usize, y as usize) {
+            0 => framed,
+            depth if depth > geometry.band => inner,
+            _ => seam::fade(framed, inner, cut.share([side, side], [x as usize, y as usize])),
+        }
     })
 }

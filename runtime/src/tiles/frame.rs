@@ -61,7 +61,7 @@ impl Geometry {
 const CANDIDATES: usize = 192;
 
 /// How much a level by which a place stands out counts, in costs of a seam.
-const CALM: f32 = 6.0;
+const CALM: f32 = 0.3;
 
 /// The frame of a photograph: a tile whose texels up to the band's depth are those of the best of
 /// many random plus shapes; what lies deeper is of no use. The photograph is as large as is needed.
@@ -125,7 +125,7 @@ impl<'a> Plus<'a> {
     /// How much pieces of the arms stand out, in the mean.
     fn stands_out(&self, levels: &Levels) -> f32 {
         let Geometry { period, overlap, band, .. } = self.geometry;
-        let piece = (band / 2).max(2) as i64;
+        let piece = (band / 4).max(2) as i64;
         let steps = (period + overlap) as i64 / piece;
         let [x, y] = self.crossing.map(|at| at as i64);
         let start = [x, y].map(|at| at - self.geometry.half() as i64);
@@ -161,9 +161,12 @@ impl<'a> Plus<'a> {
     fn closed(&self, axis: usize, from: usize, across: usize) -> Texel {
         let Geometry { period, band, overlap, .. } = self.geometry;
         let along = (from + self.geometry.half()) % period;
-        let is_tail = along < overlap && self.arms[axis].is_first[along * (2 * band + 1) + across];
-        let along = if is_tail { along + period } else { along };
-        arm(self.photo, self.geometry, self.crossing, axis, [along, across])
+        let texel = |along: usize| arm(self.photo, self.geometry, self.crossing, axis, [along, across]);
+        if along >= overlap {
+            return texel(along);
+        }
+        let share = self.arms[axis].share([2 * band + 1, overlap], [across, along]);
+        seam::fade(texel(along + period), texel(along), share)
     }
 }
 

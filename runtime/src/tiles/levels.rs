@@ -1,6 +1,19 @@
 //! Light and shade of a photograph: its means over squares.
 
-use super::Bitmap;
+use super::bitmap::Bitmap;
+
+/// A photograph without its slow changes: the mean of the square of `side` texels around each texel
+/// becomes that of the whole picture. Left in, they would make some tiles lighter than others.
+pub fn evened(photo: &Bitmap, side: u32) -> Bitmap {
+    let levels = Levels::new(photo);
+    let (whole, side) = (levels.whole(), i64::from(side));
+    Bitmap::new(photo.size(), |x, y| {
+        let texel = photo.texel(x, y);
+        let here = levels.mean([i64::from(x) - side / 2, i64::from(y) - side / 2], [side, side]);
+        let code = |i: usize| (f32::from(texel[i]) + whole[i] - here[i]).round().clamp(0.0, 255.0) as u8;
+        [code(0), code(1), code(2), texel[3]]
+    })
+}
 
 /// The sums of a picture's channels over all rectangles from its first texel.
 pub struct Levels {
@@ -47,10 +60,10 @@ impl Levels {
         self.mean([0, 0], [self.width as i64, self.height as i64])
     }
 
-    /// How far the mean of a rectangle is from that of the picture: the sum of its channels, in
-    /// levels. What is light or dark as a whole is seen again wherever it is repeated.
+    /// How far the mean of a rectangle is from that of the picture: the sum of the squares of its
+    /// channels, in levels. What is light or dark as a whole is seen again wherever it is repeated.
     pub fn stands_out(&self, from: [i64; 2], size: [i64; 2]) -> f32 {
         let (here, whole) = (self.mean(from, size), self.whole());
-        here.iter().zip(whole).map(|(here, whole)| (here - whole).abs()).sum()
+        here.iter().zip(whole).map(|(here, whole)| (here - whole) * (here - whole)).sum()
     }
 }

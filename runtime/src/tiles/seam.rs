@@ -18,6 +18,11 @@ pub fn cost(a: [Texel; 2], b: [Texel; 2]) -> u32 {
     1 + SCALE * apart / (FLAT + gradient) / FLAT
 }
 
+/// `share` of one texel, the rest of another: codes are averaged, as an eye sees them.
+pub fn fade(a: Texel, b: Texel, share: f32) -> Texel {
+    [0, 1, 2, 3].map(|i| (f32::from(b[i]) + (f32::from(a[i]) - f32::from(b[i])) * share).round() as u8)
+}
+
 /// The sum of the differences of all channels, in levels.
 pub fn distance(a: Texel, b: Texel) -> u32 {
     a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(b))).sum()
