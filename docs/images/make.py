@@ -33,8 +33,33 @@ def save(picture, name):
 
 
 def examples():
-    for name in ["stamps.jpg", "terrain.jpg", "weave.jpg", "truchet.jpg"]:
-        save(render(f"examples/{name.split('.')[0]}.tex", 512), name)
+    for name in ["stamps", "terrain", "weave", "truchet", "landscape", "flowers", "ground", "decals"]:
+        save(render(f"examples/{name}.tex", 512), f"{name if name != 'ground' else 'layers'}.jpg")
+
+
+def rows():
+    """The textures of one file side by side, as the paper shows them."""
+    files = {
+        "distribution": ["uniform", "by_probability", "by_area", "dithered"],
+        "leaves": ["basic", "by_probability", "by_density"],
+    }
+    for file, textures in files.items():
+        strip = Image.new("RGB", (len(textures) * 328 - 8, 320), "white")
+        for i, name in enumerate(textures):
+            strip.paste(render(f"examples/{file}.tex:{name}", 320), (i * 328, 0))
+        save(strip, f"{file}.jpg")
+
+
+def signboard():
+    """Before its message changes, while it does, and after."""
+    strip = Image.new("RGB", (1152, 3 * 144 + 2 * 8), "white")
+    for i, time in enumerate(["1.5", "2.6", "6"]):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.png"
+            view = ["--size", "1152x144", "--time", time]
+            subprocess.run([COMMAND, "render", "examples/signboard.tex", "-o", out, *view], cwd=ROOT, check=True)
+            strip.paste(Image.open(out).convert("RGB"), (0, i * 152))
+    save(strip, "signboard.jpg")
 
 
 def guide():
@@ -73,3 +98,5 @@ if __name__ == "__main__":
     guide()
     ground()
     wires()
+    rows()
+    signboard()

@@ -86,10 +86,7 @@ fn a_sequence_goes_along_any_value_and_keeps_its_time_line() {
     let pixels = drawing.cells(32);
     let row = |y: usize| -> Vec<f32> { pixels[y * 32..][..32].iter().map(|pixel| pixel[0]).collect() };
     assert_eq!(row(0)[..9], [0.0; 9], "before its begin it shows its first frame");
-    assert_eq!(
-        row(0)[8..24].iter().copied().collect::<Vec<_>>(),
-        (0..16).map(|i| i as f32).collect::<Vec<_>>()
-    );
+    assert_eq!(row(0)[8..24].to_vec(), (0..16).map(|i| i as f32).collect::<Vec<_>>());
     assert_eq!(row(0)[24..], [15.0; 8]);
     assert_eq!(row(31)[..16], [0.0; 16], "half of the time line");
     assert_eq!(row(31)[17..32], [5., 5., 5., 5., 9., 9., 9., 9., 9., 9., 5., 5., 5., 5., 5.]);
