@@ -12,6 +12,9 @@ use texgraph_grammar::syntax::{self, Dim, ItemKind, TypeKind};
 /// Steps of all folds that a value takes at most, far below the language's bound.
 const MOST_STEPS: u32 = 2_000;
 
+/// Inputs of library nodes that refuse constants beyond a bound, and the greatest each takes.
+const BOUNDED: &[(&str, &str, usize)] = &[("transition_tile", "families", 4)];
+
 /// One output of one thing to call.
 type Candidate = (Callable, usize);
 
@@ -151,14 +154,20 @@ impl Generator<'_, '_> {
             named |= i > 0 && self.choices.chance(10);
             let argument = match input.takes {
                 // Some of these bound a fold of the library.
-                Takes::Value(Ty::INT) if input.optional && callable.library => {
-                    Expr::primary((1 + self.choices.below(6)).to_string())
-                }
-                _ => self.argument(s, callable, input, (i == 0, binds), n, depth)?,
+                Takes::Value(Ty::INT) if input.optional && callable.library => self.up_to(6),
+                _ => match bound(callable, input) {
+                    Some(greatest) => self.up_to(greatest),
+                    None => self.argument(s, callable, input, (i == 0, binds), n, depth)?,
+                },
             };
             arguments.push((named.then(|| input.name.clone()), argument));
         }
         Some(arguments)
+    }
+
+    /// A literal from 1 on.
+    fn up_to(&mut self, greatest: usize) -> Expr {
+        Expr::primary((1 + self.choices.below(greatest)).to_string())
     }
 
     fn argument(
@@ -252,6 +261,12 @@ pub fn library(library: &Library) -> Vec<Callable> {
         }
     }
     callables
+}
+
+/// The greatest literal that an input takes, where it has a bound.
+fn bound(callable: &Callable, input: &Input) -> Option<usize> {
+    let bounded = |(name, of, _): &&(&str, &str, usize)| callable.text == *name && input.name == *of;
+    BOUNDED.iter().filter(|_| callable.library).find(bounded).map(|(.., greatest)| *greatest)
 }
 
 fn intrinsic_call(library: &Library, intrinsic: Intrinsic) -> Option<Callable> {
