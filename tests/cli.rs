@@ -18,5 +18,7 @@ mod help;
 mod profile;
 #[path = "cli/render.rs"]
 mod render;
+#[path = "cli/tiles.rs"]
+mod tiles;
 #[path = "cli/workshop.rs"]
 mod workshop;

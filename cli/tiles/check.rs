@@ -13,7 +13,9 @@ use texgraph_runtime::tiles::{self, Edge, Pair, Report, Side};
 /// The sheet can't be read or does not suit. One whose edges differ by more than is allowed is shown
 /// after the figures.
 pub fn run(args: &Check, problems: &mut Problems) -> Result<(), Problem> {
-    let report = tiles::check(&super::open(&args.sheet)?, args.grid, args.families)?;
+    let sheet = super::open(&args.sheet)?;
+    let report = tiles::check(&sheet, args.grid, args.families);
+    let report = report.map_err(|error| super::refused(&args.sheet, error))?;
     output::print(&match args.format {
         Format::Text => text(&report),
         Format::Json => json(&report),

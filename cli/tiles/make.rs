@@ -11,6 +11,7 @@ use texgraph_runtime::tiles;
 pub fn run(args: &Make) -> Result<(), Problem> {
     super::write(&args.output_file, || {
         let photo = super::open(&args.photo)?;
-        Ok(tiles::make(&photo, args.grid, args.size, args.seed)?)
+        let made = tiles::make(&photo, args.grid, args.size, args.seed);
+        made.map_err(|error| super::refused(&args.photo, error))
     })
 }

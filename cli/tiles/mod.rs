@@ -41,6 +41,14 @@ fn write(path: &Path, make: impl FnOnce() -> Result<Bitmap, Problem>) -> Result<
     output::write(&[(path.to_path_buf(), make()?.to_png()?)])
 }
 
+/// What is wrong with a picture, by its name, or with what is asked for.
+fn refused(path: &Path, error: TilesError) -> Problem {
+    match Problem::from(error) {
+        Problem::Input(sentence) => Problem::Input(format!("`{}`: {sentence}", path.display())),
+        other => other,
+    }
+}
+
 impl From<TilesError> for Problem {
     fn from(error: TilesError) -> Problem {
         let sentence = error.to_string();

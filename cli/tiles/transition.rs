@@ -24,8 +24,9 @@ pub fn run(args: &Transition) -> Result<(), Problem> {
 
 fn family(args: &Transition, path: &Path) -> Result<Family, Problem> {
     let picture = super::open(path)?;
-    Ok(match args.grid {
-        Some(grid) => Family::of_sheet(&picture, grid)?,
-        None => Family::cut(&picture, args.size, COUNT, args.seed)?,
-    })
+    let family = match args.grid {
+        Some(grid) => Family::of_sheet(&picture, grid),
+        None => Family::cut(&picture, args.size, COUNT, args.seed),
+    };
+    family.map_err(|error| super::refused(path, error))
 }

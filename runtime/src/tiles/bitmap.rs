@@ -7,7 +7,10 @@ use crate::resource::decode;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use std::path::Path;
-use texgraph_compiler::diagnostic::{Diagnostic, Place};
+use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
+
+/// The longest side of a picture that is read.
+const MAX_SIDE: u32 = 8192;
 
 /// A texel: red, green, blue and straight alpha, sRGB codes 0 to 255.
 pub type Texel = [u8; 4];
@@ -34,7 +37,13 @@ impl Bitmap {
     /// The file can't be read, is no whole picture, or is too large.
     pub fn open(path: &Path) -> Result<Bitmap, Vec<Diagnostic>> {
         let project = Project::new(path, true);
-        let picture = decode::open(&project, project.main(), Place::default())?.decode()?;
+        let file = decode::open(&project, project.main(), Place::default())?;
+        if file.size.iter().any(|side| *side > MAX_SIDE) {
+            let too_large =
+                resources::picture_too_large(Place::default(), project.main(), file.size, MAX_SIDE);
+            return Err(vec![too_large]);
+        }
+        let picture = file.decode()?;
         let code = |sample: u16| match picture.is_deep() {
             true => ((u32::from(sample) * 255 + 32767) / 65535) as u8,
             false => sample as u8,

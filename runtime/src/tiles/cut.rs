@@ -222,3 +222,65 @@ impl Flow {
         node
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Cut, FIXED, Pull, minimum};
+    use crate::tiles::random;
+
+    const SIZE: [usize; 2] = [4, 3];
+
+    /// What parting the texels so costs.
+    fn cost(is_first: &[bool], link: &dyn Fn(usize, usize) -> u32, pull: &dyn Fn(usize) -> Pull) -> u64 {
+        let parted = |a: usize, b: usize| if is_first[a] == is_first[b] { 0 } else { u64::from(link(a, b)) };
+        let mut sum = 0;
+        for node in 0..SIZE[0] * SIZE[1] {
+            let Pull { to_first, to_second } = pull(node);
+            sum += u64::from(if is_first[node] { to_second } else { to_first });
+            if node % SIZE[0] + 1 < SIZE[0] {
+                sum += parted(node, node + 1);
+            }
+            if node + SIZE[0] < SIZE[0] * SIZE[1] {
+                sum += parted(node, node + SIZE[0]);
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn no_other_cut_of_a_small_grid_is_cheaper() {
+        let count = SIZE[0] * SIZE[1];
+        for seed in 0..60 {
+            let link = |a: usize, b: usize| random::at([a as u32, b as u32], seed)[0] % 10;
+            let pull = |node: usize| match (random::at([node as u32, 99], seed)[1] % 6, node) {
+                (_, 0) => Pull::FIRST,
+                (0, _) => Pull { to_first: 4, to_second: 1 },
+                (1, _) => Pull { to_first: 0, to_second: 7 },
+                (2, _) if node > 6 => Pull::SECOND,
+                _ => Pull::default(),
+            };
+            let Cut { is_first, cost: found } = minimum(SIZE, link, pull);
+            assert_eq!(found, cost(&is_first, &link, &pull), "seed {seed}");
+            let least = (0..1u32 << count)
+                .map(|bits| cost(&(0..count).map(|i| bits >> i & 1 == 1).collect::<Vec<_>>(), &link, &pull))
+                .min();
+            assert_eq!(Some(found), least, "seed {seed}");
+            assert!(found < u64::from(FIXED), "nothing fixed is cut");
+        }
+    }
+
+    #[test]
+    fn a_cut_follows_the_cheap_links() {
+        // Column 2 is cheap to leave at its right.
+        let link = |a: usize, b: usize| if a % 5 == 2 && b == a + 1 { 1 } else { 50 };
+        let cut = minimum([5, 4], link, |node| match node % 5 {
+            0 => Pull::FIRST,
+            4 => Pull::SECOND,
+            _ => Pull::default(),
+        });
+        assert_eq!(cut.cost, 4);
+        assert!((0..20).all(|node| cut.is_first[node] == (node % 5 <= 2)));
+        let shares = [0, 1, 2, 3, 4].map(|x| cut.share([5, 4], [x, 1]));
+        assert_eq!(shares, [1.0, 0.75, 0.6, 0.5, 1.0 / 3.0], "it fades over two texels to each side");
+    }
+}

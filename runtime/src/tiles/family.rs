@@ -43,8 +43,8 @@ impl Family {
         let photo = &evened(photo, side);
         let frame = frame(photo, geometry, &mut Random::new(seed, 0));
         let places = choose(photo, &frame, geometry, count, seed);
-        let tiles = places.into_iter().map(|(place, cut)| tile(photo, &frame, geometry, place, &cut));
-        Ok(Family { tiles: tiles.collect() })
+        let tile = |place: &[u32; 2]| tile(photo, &frame, geometry, *place);
+        Ok(Family { tiles: places.par_iter().map(tile).collect() })
     }
 
     /// The tiles of a sheet, which must be compatible for what is made of them to be.
@@ -99,15 +99,14 @@ fn check_photo(photo: &Bitmap, side: u32) -> Result<(), TilesError> {
     Err(TilesError::PhotoTooSmall { size: photo.size(), side, needed: Geometry::new(side).needed(), largest })
 }
 
-/// A place of the photograph that may fill a tile, and how it is cut into the frame.
+/// A place of the photograph that may fill a tile.
 struct Candidate {
     place: [u32; 2],
-    cut: Cut,
     cost: f32,
 }
 
 /// The places of the tiles: cheap ones that share little with each other.
-fn choose(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, count: u32, seed: u32) -> Vec<([u32; 2], Cut)> {
+fn choose(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, count: u32, seed: u32) -> Vec<[u32; 2]> {
     let mut random = Random::new(seed, 1);
     let mut place = || photo.size().map(|side| random.below(side - geometry.side as u32 + 1));
     let tried = (count * CANDIDATES_PER_TILE).max(LEAST_CANDIDATES);
@@ -117,25 +116,24 @@ fn choose(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, count: u32, seed: 
     let levels = Levels::new(photo);
     let candidate = |place: &[u32; 2]| candidate(photo, frame, geometry, &levels, *place);
     let mut candidates: Vec<Candidate> = places.par_iter().map(candidate).collect();
-    let mut chosen: Vec<([u32; 2], Cut)> = Vec::new();
+    let mut chosen = Vec::new();
     while chosen.len() < count as usize {
         let Some(best) = cheapest(&candidates, &chosen, geometry) else { break };
-        let Candidate { place, cut, .. } = candidates.swap_remove(best);
-        chosen.push((place, cut));
+        chosen.push(candidates.swap_remove(best).place);
     }
     // A photograph with fewer places than tiles shows some of them again.
     let distinct = chosen.len();
     while distinct > 0 && chosen.len() < count as usize {
-        chosen.push(chosen[chosen.len() % distinct].clone());
+        chosen.push(chosen[chosen.len() - distinct]);
     }
     chosen
 }
 
 /// The candidate that costs least, what it shares with the chosen ones included.
-fn cheapest(candidates: &[Candidate], chosen: &[([u32; 2], Cut)], geometry: Geometry) -> Option<usize> {
+fn cheapest(candidates: &[Candidate], chosen: &[[u32; 2]], geometry: Geometry) -> Option<usize> {
     let least = candidates.iter().map(|candidate| candidate.cost).fold(f32::INFINITY, f32::min);
     let total = |candidate: &Candidate| {
-        let shared: f32 = chosen.iter().map(|(place, _)| shared(candidate.place, *place, geometry)).sum();
+        let shared: f32 = chosen.iter().map(|place| shared(candidate.place, *place, geometry)).sum();
         candidate.cost + SHARED * least * shared
     };
     let totals = candidates.iter().map(total).enumerate();
@@ -156,15 +154,15 @@ fn candidate(
     levels: &Levels,
     place: [u32; 2],
 ) -> Candidate {
-    let cut = insert(photo, frame, geometry, place);
+    let seam = insert(photo, frame, geometry, place).cost;
     let along = (4 * geometry.period) as f32;
     let quarter = geometry.side as i64 / 4;
     let pieces = (0..16i64).map(|i| {
         let from = [i64::from(place[0]) + i % 4 * quarter, i64::from(place[1]) + i / 4 * quarter];
         levels.stands_out(from, [quarter, quarter])
     });
-    let cost = cut.cost as f32 / along + CALM * pieces.sum::<f32>() / 16.0;
-    Candidate { place, cut, cost }
+    let cost = seam as f32 / along + CALM * pieces.sum::<f32>() / 16.0;
+    Candidate { place, cost }
 }
 
 /// Cuts a place of the photograph into the frame. The edge is the frame's, what lies deeper than the
@@ -190,9 +188,10 @@ fn insert(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32;
     })
 }
 
-/// The tile of a cut: across it the place fades into the frame, but not on the edge.
-fn tile(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32; 2], cut: &Cut) -> Bitmap {
+/// The tile that shows a place: across the cut it fades into the frame, but not on the edge.
+fn tile(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32; 2]) -> Bitmap {
     let side = geometry.side;
+    let cut = insert(photo, frame, geometry, [left, top]);
     Bitmap::new([side as u32; 2], |x, y| {
         let (framed, inner) = (frame.texel(x, y), photo.texel(left + x, top + y));
         match geometry.depth(x as usize, y as usize) {
