@@ -24,6 +24,13 @@ pub enum Problem {
         /// Why, with the path.
         why: String,
     },
+    /// A picture named on the command line can't be read: exit code 1.
+    Picture {
+        /// Its path as the user sees it.
+        path: String,
+        /// Why.
+        diagnostics: Vec<Diagnostic>,
+    },
     /// Something else is wrong with the input: exit code 1.
     Input(String),
     /// The command line asks for what makes no sense: exit code 2.
@@ -41,7 +48,7 @@ impl Problem {
 
     fn exit_code(&self) -> u8 {
         match self {
-            Problem::Pages(_) | Problem::Unread { .. } | Problem::Input(_) => 1,
+            Problem::Pages(_) | Problem::Unread { .. } | Problem::Picture { .. } | Problem::Input(_) => 1,
             Problem::Usage(_) => 2,
             Problem::Machine(_) => 3,
         }
@@ -88,6 +95,9 @@ impl From<RenderError> for Problem {
 /// The code of a file that can't be read, as of an imported one.
 const UNREAD: &str = "E0601";
 
+/// The code of a picture that is not there: nothing more can be said of it.
+const MISSING: &str = "E0501";
+
 /// Shows problems and remembers the worst.
 pub struct Report {
     format: MessageFormat,
@@ -111,6 +121,7 @@ impl Report {
         let text = match problem {
             Problem::Pages(failure) => self.pages(&failure.sources, &failure.diagnostics),
             Problem::Unread { path, why } => self.unread(path, why),
+            Problem::Picture { path, diagnostics } => self.picture(path, diagnostics),
             Problem::Input(text) | Problem::Usage(text) | Problem::Machine(text) => self.sentence(text),
         };
         // When even standard error is closed, the exit code is all that can be said.
@@ -145,6 +156,22 @@ impl Report {
         }
         let sources = Sources(vec![Source { path: path.to_owned(), text: "".into() }]);
         self.pages(&sources, &[Diagnostic { code: UNREAD, ..without_code(why) }])
+    }
+
+    /// Likewise, with the code and the reason that pages show under a source line.
+    fn picture(&self, path: &str, diagnostics: &[Diagnostic]) -> String {
+        if self.format != MessageFormat::Human {
+            let sources = Sources(vec![Source { path: path.to_owned(), text: "".into() }]);
+            return self.pages(&sources, diagnostics);
+        }
+        let told = |diagnostic: &Diagnostic| match diagnostic.code {
+            MISSING => diagnostic.clone(),
+            _ => Diagnostic {
+                message: format!("{}: {}", diagnostic.message, diagnostic.label),
+                ..diagnostic.clone()
+            },
+        };
+        self.pages(&Sources::default(), &diagnostics.iter().map(told).collect::<Vec<_>>())
     }
 
     fn sentence(&self, text: &str) -> String {

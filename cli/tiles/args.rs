@@ -15,34 +15,35 @@ const MAKE: &str = "\
 Example:
   texgraph tiles make lawn.png --grid 4x4 --size 128 -o grass.png
 writes 16 tiles of 128×128 texels for `patterns(\"grass.png\", grid: ivec2(4, 4))`.
-All tiles have one border, taken from a calm place of the photograph; inside each shows a place of its
-own, cut into the border where that is seen least. The photograph needs a quarter more texels along
-each side than a tile. Evenly lit ones without large things to recognise are best.";
+All tiles have one border, taken from a calm place of the photograph; inside, each shows a place of
+its own, cut into the border where that is seen least. Light and shade wider than a tile are taken
+out. The photograph needs a quarter more texels along each side than a tile; best are those without
+large things to recognise.";
 
 const TRANSITION: &str = "\
 Examples:
-  texgraph tiles transition beach.png lawn.png -o shore.png          two photographs
-  texgraph tiles transition sand.png grass.png --grid 4x4 -o shore.png    two sheets of tiles
-  texgraph tiles transition lawn.png --border -o edge.png            grass over anything
-writes 16 tiles, 4×4, in the order of their corner codes: tile c00 + 2·c10 + 4·c01 + 8·c11 has family
-c00 at its top left, c10 at its top right, c01 at its bottom left and c11 at its bottom right, 0 for the
-first picture and 1 for the second. With --border 0 is transparent and 1 the picture.
-From a photograph the borders are those of `make` with the same --size and --seed, so the tiles fit
-together. From sheets the tiles fit as well as those of the sheets do.";
+  texgraph tiles transition beach.png lawn.png -o shore.png              two photographs
+  texgraph tiles transition sand.png grass.png --grid 4x4 -o shore.png   two sheets of tiles
+  texgraph tiles transition lawn.png --border -o edge.png                grass over anything
+writes 16 tiles, 4×4, in the order of their corner codes: tile c00 + 2·c10 + 4·c01 + 8·c11 has
+family c00 at its top left, c10 at its top right, c01 at its bottom left, c11 at its bottom right;
+0 is the first picture and 1 the second. With --border 0 is transparent and 1 the picture.
+From photographs the edges are those of `make` with the same --size and --seed, so the tiles fit
+together. From sheets, tiles fit as well as those of the sheets do.";
 
 const LAYOUT: &str = "\
 Example:
   texgraph tiles layout --families 2 --size 64 -o to_paint.png
 writes 16 tiles, each with its corner codes and its number, to be painted over. m families have m⁴
-tiles, up to 4 families. Where there are more, paint 16 border tiles for each.";
+tiles, up to 4 families; where there are more, paint 16 border tiles for each.";
 
 const CHECK: &str = "\
 Examples:
   texgraph tiles check grass.png --grid 4x4
   texgraph tiles check shore.png --families 2 --max 1    exit code 1 if any pair differs more
-Compares the texels of all edges that may face each other, in 8-bit levels of sRGB (colours times alpha).
-Edges that are equal suit tiles that are magnified; in sheets whose tiles go on in each other instead,
-facing texels differ as much as neighbours inside tiles do.";
+Compares the texels of all edges that may face each other, in 8-bit levels of sRGB (colours times
+alpha). Equal edges are what tiles need that are magnified; in sheets whose tiles go on in each
+other instead, facing texels differ as much as neighbours inside tiles do.";
 
 #[derive(clap::Args)]
 #[command(after_help = TILES, disable_help_subcommand = true)]

@@ -10,8 +10,6 @@ use crate::output;
 use crate::problem::{Problem, Report};
 use args::{Tiles, TilesCommand};
 use std::path::Path;
-use texgraph_compiler::Failure;
-use texgraph_compiler::module::{Source, Sources};
 use texgraph_runtime::tiles::{Bitmap, TilesError};
 
 /// Runs the subcommand.
@@ -29,10 +27,11 @@ pub fn run(args: &Tiles, report: &mut Report) -> Result<(), Problem> {
 
 /// Reads a picture.
 fn open(path: &Path) -> Result<Bitmap, Problem> {
-    Bitmap::open(path).map_err(|diagnostics| {
-        let sources = Sources(vec![Source { path: path.display().to_string(), text: "".into() }]);
-        Problem::Pages(Failure { sources, diagnostics })
-    })
+    let shown = path.display().to_string();
+    if path.file_name().is_none() {
+        return Err(Problem::Input(format!("`{shown}` is a folder, not a file")));
+    }
+    Bitmap::open(path).map_err(|diagnostics| Problem::Picture { path: shown, diagnostics })
 }
 
 /// Makes a sheet for a place that is known to be writable, and writes it.

@@ -31,7 +31,7 @@ impl Bitmap {
         Bitmap { size, texels: (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| texel(x, y))).collect() }
     }
 
-    /// Reads a PNG, JPEG or TGA file. Samples of 16 bits are rounded to 8.
+    /// Reads a PNG, JPEG or TGA file of up to 8192 texels a side. Samples of 16 bits are rounded to 8.
     ///
     /// # Errors
     /// The file can't be read, is no whole picture, or is too large.
