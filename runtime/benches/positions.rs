@@ -71,9 +71,15 @@ fn measure(gpu: Option<&Gpu>, side: u32, layers: u32) {
 
 /// A sprite on its way.
 fn sprite(i: u32, frame: u32) -> Sprite {
-    let place = |n: u32| (n.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32;
-    let drift = frame as f32 * 0.002 * (place(i + 77_777) - 0.5);
-    Sprite { pattern: i % 16, at: [place(2 * i) + drift, place(2 * i + 1) - drift], scale: 0.5, turn: drift }
+    let drift = frame as f32 * 0.002 * (random(i, 2) - 0.5);
+    Sprite { pattern: i % 16, at: [random(i, 0) + drift, random(i, 1) - drift], scale: 0.5, turn: drift }
+}
+
+/// A number in 0..1.
+fn random(i: u32, n: u32) -> f32 {
+    let mixed = (i ^ (n << 28)).wrapping_mul(0x9e37_79b1);
+    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85eb_ca6b);
+    ((mixed ^ (mixed >> 13)).wrapping_mul(0xc2b2_ae35) >> 8) as f32 / (1 << 24) as f32
 }
 
 fn loaded(folder: &Path, side: u32, layers: u32) -> (Program, Tables) {

@@ -233,7 +233,7 @@ fn an_edited_map_is_drawn_as_edited() {
     assert_eq!(tables.get(DECALS, "cells").map(|bytes| &bytes[..]), Some(map.bytes()));
     let mut scene = cpu::Scene::new(&program, &tables, 0).expect("the tables are whole");
     let request = Request { region: [0.0, 0.0, 2.0, 1.0], ..Request::new([120, 50]) };
-    let mut draw = |scene: &mut cpu::Scene<'_>| scene.render(&request, &|_| {}).expect("it can be drawn");
+    let draw = |scene: &mut cpu::Scene<'_>| scene.render(&request, &|_| {}).expect("it can be drawn");
     let old = draw(&mut scene);
     let sprites = edited(&mut map);
     scene.write(DECALS, "cells", &map.take_writes()).expect("it is there");
