@@ -92,8 +92,8 @@ pub enum FieldKind {
     /// the same name.
     Lent(View),
     /// The resource itself seen as one of another kind, by its name: the views and constants of that
-    /// kind's fields are those of the same name, but for its `count`, which is named here. There is
-    /// none where that is 0.
+    /// kind's fields are those of the same name (constants need not be fields here), but for its
+    /// `count`, which is named here. There is none where that is 0.
     As(&'static str, &'static str),
     /// A colour that is read: the texel of the first row of a view, at a constant; both by name.
     Texel(&'static str, &'static str),
@@ -398,9 +398,6 @@ pub static KINDS: &[Kind] = &[
             Field { name: "grid", kind: FieldKind::Constant },
             Field { name: "most", kind: FieldKind::Constant },
             Field { name: "tiles", kind: FieldKind::Constant },
-            Field { name: "linear", kind: FieldKind::Constant },
-            Field { name: "taps", kind: FieldKind::Constant },
-            Field { name: "normals", kind: FieldKind::Constant },
         ],
         view: None,
         make: positions::make,

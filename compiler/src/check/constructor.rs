@@ -370,6 +370,17 @@ pub fn with_anisotropy(view: View, constants: &[(&'static str, Constant)]) -> Vi
 
 /// Placeholders for the constants of a resource input, to check a node that nobody calls.
 pub fn placeholder(kind: usize) -> Vec<(&'static str, Constant)> {
-    let constants = KINDS[kind].fields.iter().filter(|field| field.kind == FieldKind::Constant);
-    constants.map(|field| (field.name, Constant::ints(&[16]))).collect()
+    let own = KINDS[kind].fields;
+    let seen = own.iter().filter_map(|field| match field.kind {
+        FieldKind::As(kind, _) => KINDS.iter().find(|known| known.name == kind),
+        _ => None,
+    });
+    let fields = own.iter().chain(seen.flat_map(|kind| kind.fields));
+    let mut constants: Vec<(&'static str, Constant)> = Vec::new();
+    for field in fields.filter(|field| field.kind == FieldKind::Constant) {
+        if constants.iter().all(|(name, _)| *name != field.name) {
+            constants.push((field.name, Constant::ints(&[16])));
+        }
+    }
+    constants
 }

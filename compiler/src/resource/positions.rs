@@ -26,14 +26,12 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
     let [patterns] = a.parts("patterns") else {
         return Err(constructors::wrong_argument(a.place("patterns"), "patterns", "patterns"));
     };
-    let constants = vec![
+    let mut constants = vec![
         ("grid", Constant::ints(&grid)),
         ("most", Constant::ints(&[layers as i32])),
         ("tiles", Constant::ints(&[patterns.int("count")])),
-        ("linear", Constant::ints(&[patterns.int("linear")])),
-        ("taps", Constant::ints(&[patterns.int("taps")])),
-        ("normals", Constant::ints(&[patterns.int("normals")])),
     ];
+    constants.extend(patterns.constants.iter().filter(|(name, _)| *name != "count"));
     let path = a.paths("path").into_iter().next().unwrap_or_default();
     let grid = grid.map(|side| side as u32);
     Ok(Made {
