@@ -202,6 +202,10 @@ pub struct Build {
     /// Where the derivatives come from that samples are filtered with
     #[arg(long, value_enum, default_value_t, value_name = "FROM")]
     pub gradients: Gradients,
+    /// Discard pixels whose `color` has less alpha than this, 0 to 1, for hosts that test alpha instead
+    /// of blending; in the complete form
+    #[arg(long, value_name = "ALPHA", value_parser = alpha)]
+    pub discard_below: Option<f32>,
     /// The format of the manifest
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub manifest: ManifestFormat,
@@ -397,6 +401,11 @@ fn repeat(text: &str) -> Result<f32, String> {
     let number = finite(text)? as f32;
     let fits = number > 0.0 && number <= MAX_REPEAT;
     if fits { Ok(number) } else { Err(format!("it is above 0 and at most {MAX_REPEAT}")) }
+}
+
+fn alpha(text: &str) -> Result<f32, String> {
+    let alpha = finite(text)?;
+    if (0.0..=1.0).contains(&alpha) { Ok(alpha as f32) } else { Err("it must be from 0 to 1".to_owned()) }
 }
 
 fn seconds(text: &str) -> Result<f32, String> {

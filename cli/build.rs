@@ -24,6 +24,10 @@ type Made = (String, Arc<[u8]>);
 /// The file is wrong as a whole, or can't be written. What is wrong with single textures is shown
 /// as it is found.
 pub fn run(args: &Build, report: &mut Report) -> Result<(), Problem> {
+    if args.discard_below.is_some() && args.form != Form::Complete {
+        let why = "--discard-below needs an entry point: --form complete; others discard by themselves";
+        return Err(Problem::Usage(why.into()));
+    }
     let library = program::library()?;
     let program = Program::open(&library, &args.file, args.common.allow_outside)?;
     let mut made = Vec::new();
@@ -66,12 +70,20 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
             Gradients::Argument => manifest::Gradients::Argument,
             Gradients::None => manifest::Gradients::None,
         },
+        discard_below: args.discard_below,
         group: args.group.unwrap_or(group),
         first_binding: args.first_binding.unwrap_or(first_binding),
         profile,
         plane: None,
     };
     let mut compiled = program.compile(&options)?;
+    let manifest = &compiled.program.manifest;
+    if args.discard_below.is_some() && !manifest.outputs.iter().any(|output| output.name == "color") {
+        let name = &manifest.texture;
+        return Err(Problem::Usage(format!(
+            "`{name}` has no output `color` whose alpha --discard-below could test"
+        )));
+    }
     let mut tables = program.load(&mut compiled)?;
     program::fit(&compiled, profile)?;
     bake::render_fixed(&compiled.program, &mut tables)?;

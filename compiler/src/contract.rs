@@ -125,6 +125,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
         inputs,
         gradients,
         outputs: outputs(entry),
+        discard_below: options.discard_below.filter(|_| options.form == Form::Complete),
         params,
         uniform,
         passes,
@@ -147,6 +148,7 @@ pub fn of_pass(manifest: &Manifest, index: usize) -> Cow<'_, Manifest> {
     own.inputs = vec![Input { name: "uv".to_owned(), ty: float(2), source: Source::Varying(0) }];
     let texel = Output { name: "texel".to_owned(), ty: float(4), location: 0, is_color: false };
     own.gradients = Vec::new();
+    own.discard_below = None;
     own.outputs = vec![texel];
     Cow::Owned(own)
 }

@@ -53,6 +53,9 @@ pub struct Options {
     pub form: Form,
     /// Where screen derivatives come from. Bakes take their own.
     pub gradients: Gradients,
+    /// The alpha of `color` below which the entry point of the complete form discards a pixel, for
+    /// hosts that test alpha instead of blending.
+    pub discard_below: Option<f32>,
     /// `@group` of everything that is bound.
     pub group: u32,
     /// The first `@binding`; the others follow.
@@ -71,6 +74,7 @@ impl Default for Options {
             outputs: None,
             form: Form::Complete,
             gradients: Gradients::Derive,
+            discard_below: None,
             group: 0,
             first_binding: 0,
             profile: Profile::Webgpu,

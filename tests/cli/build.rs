@@ -142,3 +142,17 @@ fn pictures_stay_in_the_folder() {
     shop.run(&["build", "sub/a.tex"]).fails(1, "E0502");
     assert!(shop.run(&["build", "sub/a.tex", "--allow-outside"]).is_silent());
 }
+
+#[test]
+fn pixels_that_cover_too_little_are_discarded_where_a_host_tests_alpha() {
+    let shop = Workshop::new(&[("two.tex", TWO)]);
+    assert!(shop.run(&["build", "two.tex", "--texture=second", "--discard-below", "0.25"]).is_silent());
+    let manifest = Manifest::from_ron(&shop.text("second.ron")).expect("a manifest");
+    assert_eq!(manifest.discard_below, Some(0.25));
+    let wgsl = shop.text("second.wgsl");
+    assert!(wgsl.contains("< 0.25f") && wgsl.contains("discard;"), "{wgsl}");
+    let library = ["build", "two.tex", "--texture=second", "--form=library", "--discard-below=0.25"];
+    shop.run(&library).fails(2, "--form complete");
+    shop.run(&["build", "two.tex", "--texture=first", "--discard-below=0.25"]).fails(2, "no output `color`");
+    shop.run(&["build", "two.tex", "--texture=second", "--discard-below=2"]).fails(2, "from 0 to 1");
+}

@@ -118,6 +118,7 @@ fn no_manifest() -> Manifest {
         form: manifest::Form::Functions,
         inputs: Vec::new(),
         gradients: Vec::new(),
+        discard_below: None,
         outputs: Vec::new(),
         params: Vec::new(),
         uniform: None,

@@ -220,6 +220,7 @@ impl Lowering<'_> {
                 self.widened(&mut body, value, slot)
             })
             .collect();
+        self.discard(&mut body, &outputs);
         let value = match outputs.as_slice() {
             [single] => *single,
             _ => body.add(Expression::Compose { ty: result, components: outputs }),
@@ -236,6 +237,20 @@ impl Lowering<'_> {
             task_payload: None,
             incoming_ray_payload: None,
         });
+    }
+
+    /// Ends the pixels that cover too little.
+    fn discard(&mut self, body: &mut Body, outputs: &[Handle<Expression>]) {
+        let entry = self.graph.function(self.graph.entry());
+        let color = entry.outputs.iter().position(|(slot, _)| slot.name == "color");
+        let (Some(bound), Some(color)) = (self.manifest.discard_below, color) else { return };
+        let alpha = body.add(Expression::AccessIndex { base: outputs[color], index: 3 });
+        let bound = body.literal(Literal::F32(bound));
+        let condition = body.binary(naga::BinaryOperator::Less, alpha, bound);
+        body.open();
+        body.statement(naga::Statement::Kill);
+        let accept = body.close();
+        body.statement(naga::Statement::If { condition, accept, reject: naga::Block::new() });
     }
 
     /// `fn NAME(in: NAMEInputs) -> NAMEOutputs`, or `fn NAME(in: NAMEInputs, gradients:

@@ -44,6 +44,9 @@ pub struct Manifest {
     pub gradients: Vec<Gradient>,
     /// What it gives.
     pub outputs: Vec<Output>,
+    /// The entry point discards pixels whose `color` has less alpha than this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub discard_below: Option<f32>,
     /// What a host may set at run time.
     pub params: Vec<Param>,
     /// The one uniform block; none when nothing is in it.

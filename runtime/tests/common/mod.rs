@@ -58,6 +58,7 @@ pub fn manifest() -> Manifest {
         inputs: Vec::new(),
         gradients: Vec::new(),
         outputs: Vec::new(),
+        discard_below: None,
         params: Vec::new(),
         uniform: None,
         resources: Vec::new(),
