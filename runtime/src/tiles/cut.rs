@@ -40,7 +40,7 @@ pub struct Cut {
 }
 
 /// Texels to each side of a cut across which one picture fades into the other.
-const FADE: usize = 2;
+pub const FADE: usize = 2;
 
 impl Cut {
     /// The share of the first picture in a texel of a grid of this size, 0..1: that of the first side
@@ -55,30 +55,36 @@ impl Cut {
     }
 }
 
-/// Neighbours: right, below, left, above. The opposite of d is d ^ 2.
-const DIRECTIONS: [usize; 4] = [0, 1, 2, 3];
-
 /// Cuts a grid of `width` × `height` texels. `link(a, b)` is what it costs to part the neighbours
 /// with the indices a and b, at most [`MAX_LINK`].
-pub fn minimum(
-    [width, height]: [usize; 2],
-    link: impl Fn(usize, usize) -> u32,
-    pull: impl Fn(usize) -> Pull,
-) -> Cut {
-    let mut flow = Flow::new([width, height], link, pull);
+pub fn minimum(size: [usize; 2], link: impl Fn(usize, usize) -> u32, pull: impl Fn(usize) -> Pull) -> Cut {
+    let mut flow = Flow::new(size, link, pull);
     while flow.find_levels() {
-        for root in 0..width * height {
+        for root in 0..flow.level.len() {
             flow.push_from(root);
         }
     }
     // What can still be reached has a level.
-    Cut { is_first: flow.level.iter().map(|level| *level != UNREACHED).collect(), cost: flow.total }
+    let is_reached = |node: usize| flow.level[node] != UNREACHED;
+    Cut { is_first: texels(size).map(|(_, node)| is_reached(node)).collect(), cost: flow.total }
 }
 
 const UNREACHED: u32 = u32::MAX;
 
+/// The directions of links: right, below, left, above. The opposite of d is d ^ 2.
+const RIGHT: usize = 0;
+const BELOW: usize = 1;
+
+/// All texels of a grid with their nodes. Nodes have a margin of one around the grid, without links,
+/// so that every texel has four neighbours.
+fn texels([width, height]: [usize; 2]) -> impl Iterator<Item = (usize, usize)> {
+    let node = move |texel: usize| (texel / width + 1) * (width + 2) + texel % width + 1;
+    (0..width * height).map(move |texel| (texel, node(texel)))
+}
+
 struct Flow {
-    size: [usize; 2],
+    /// Nodes from a row to the next.
+    stride: usize,
     /// What the link to each neighbour still takes.
     room: Vec<[u32; 4]>,
     /// What still comes in from the first side, and goes out to the second.
@@ -88,6 +94,7 @@ struct Flow {
     level: Vec<u32>,
     /// The neighbour to be tried next.
     next: Vec<u8>,
+    queue: VecDeque<usize>,
     /// The flow so far.
     total: u64,
 }
@@ -95,24 +102,24 @@ struct Flow {
 impl Flow {
     fn new(size: [usize; 2], link: impl Fn(usize, usize) -> u32, pull: impl Fn(usize) -> Pull) -> Flow {
         let [width, height] = size;
-        let count = width * height;
+        let count = (width + 2) * (height + 2);
         let mut flow = Flow {
-            size,
+            stride: width + 2,
             room: vec![[0; 4]; count],
             from_first: vec![0; count],
             to_second: vec![0; count],
             level: vec![UNREACHED; count],
             next: vec![0; count],
+            queue: VecDeque::new(),
             total: 0,
         };
-        for node in 0..count {
-            flow.pull(node, pull(node));
-            for direction in [0, 1] {
-                if let Some(other) = flow.neighbour(node, direction) {
-                    let cost = link(node, other).min(MAX_LINK);
-                    flow.room[node][direction] = cost;
-                    flow.room[other][direction ^ 2] = cost;
-                }
+        for (texel, node) in texels(size) {
+            flow.pull(node, pull(texel));
+            if texel % width + 1 < width {
+                flow.join(node, RIGHT, link(texel, texel + 1));
+            }
+            if texel + width < width * height {
+                flow.join(node, BELOW, link(texel, texel + width));
             }
         }
         flow
@@ -126,14 +133,19 @@ impl Flow {
         self.to_second[node] = if to_second == FIXED { FIXED } else { to_second - through };
     }
 
-    fn neighbour(&self, node: usize, direction: usize) -> Option<usize> {
-        let [width, height] = self.size;
-        let (x, y) = (node % width, node / width);
+    fn join(&mut self, node: usize, direction: usize, cost: u32) {
+        let other = self.neighbour(node, direction);
+        self.room[node][direction] = cost.min(MAX_LINK);
+        self.room[other][direction ^ 2] = cost.min(MAX_LINK);
+    }
+
+    /// The neighbour of a texel; of a node in the margin no one asks.
+    fn neighbour(&self, node: usize, direction: usize) -> usize {
         match direction {
-            0 => (x + 1 < width).then(|| node + 1),
-            1 => (y + 1 < height).then(|| node + width),
-            2 => (x > 0).then(|| node - 1),
-            _ => (y > 0).then(|| node - width),
+            RIGHT => node + 1,
+            BELOW => node + self.stride,
+            2 => node - 1,
+            _ => node - self.stride,
         }
     }
 
@@ -141,23 +153,28 @@ impl Flow {
     fn find_levels(&mut self) -> bool {
         self.level.fill(UNREACHED);
         self.next.fill(0);
-        let roots = (0..self.level.len()).filter(|node| self.from_first[*node] > 0);
-        let mut queue: VecDeque<usize> = roots.collect();
-        for root in &queue {
-            self.level[*root] = 0;
+        self.queue.clear();
+        for root in 0..self.level.len() {
+            if self.from_first[root] > 0 {
+                self.level[root] = 0;
+                self.queue.push_back(root);
+            }
         }
         let mut is_reached = false;
-        while let Some(node) = queue.pop_front() {
+        while let Some(node) = self.queue.pop_front() {
             // Nothing beyond: a path ends here.
             if self.to_second[node] > 0 {
                 is_reached = true;
                 continue;
             }
-            for direction in DIRECTIONS {
-                let Some(other) = self.neighbour(node, direction) else { continue };
-                if self.room[node][direction] > 0 && self.level[other] == UNREACHED {
+            for direction in 0..4 {
+                if self.room[node][direction] == 0 {
+                    continue;
+                }
+                let other = self.neighbour(node, direction);
+                if self.level[other] == UNREACHED {
                     self.level[other] = self.level[node] + 1;
-                    queue.push_back(other);
+                    self.queue.push_back(other);
                 }
             }
         }
@@ -185,12 +202,13 @@ impl Flow {
 
     /// The next step to a higher level that has room.
     fn step(&mut self, node: usize) -> Option<(usize, usize)> {
-        while let Some(direction) = DIRECTIONS.get(usize::from(self.next[node])).copied() {
-            let other = self.neighbour(node, direction).filter(|other| {
-                self.room[node][direction] > 0 && self.level[*other] == self.level[node].saturating_add(1)
-            });
-            if let Some(other) = other {
-                return Some((direction, other));
+        while self.next[node] < 4 {
+            let direction = usize::from(self.next[node]);
+            if self.room[node][direction] > 0 {
+                let other = self.neighbour(node, direction);
+                if self.level[other] == self.level[node].saturating_add(1) {
+                    return Some((direction, other));
+                }
             }
             self.next[node] += 1;
         }
@@ -209,10 +227,9 @@ impl Flow {
         }
         let mut full = path.len();
         for (i, (node, direction)) in path.iter().copied().enumerate().rev() {
+            let other = self.neighbour(node, direction);
             self.room[node][direction] -= amount;
-            if let Some(other) = self.neighbour(node, direction) {
-                self.room[other][direction ^ 2] += amount;
-            }
+            self.room[other][direction ^ 2] += amount;
             if self.room[node][direction] == 0 {
                 full = i;
             }

@@ -165,8 +165,8 @@ fn candidate(
     Candidate { place, cost }
 }
 
-/// Cuts a place of the photograph into the frame. The edge is the frame's, what lies deeper than the
-/// band is the place's.
+/// Cuts a place of the photograph into the frame. What is near the edge is the frame's, what lies deep
+/// is the place's, and between there is room to fade.
 fn insert(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32; 2]) -> Cut {
     let side = geometry.side;
     let both = |node: usize| -> [Texel; 2] {
@@ -182,8 +182,8 @@ fn insert(photo: &Bitmap, frame: &Bitmap, geometry: Geometry, [left, top]: [u32;
         seam::cost([frame, next_frame], [inner, next_inner])
     };
     cut::minimum([side, side], link, |node| match depth(node) {
-        0 => Pull::FIRST,
-        depth if depth >= geometry.band => Pull::SECOND,
+        depth if depth < geometry.edge() => Pull::FIRST,
+        depth if depth + cut::FADE >= geometry.band => Pull::SECOND,
         _ => Pull { to_first: 0, to_second: THICKNESS },
     })
 }

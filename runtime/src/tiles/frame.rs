@@ -50,6 +50,11 @@ impl Geometry {
         self.period / 2
     }
 
+    /// Texels from the edge that are the frame's in every tile: a photograph goes on across them.
+    pub fn edge(&self) -> usize {
+        (self.band / 4).clamp(1, 3)
+    }
+
     /// Texels from the nearest edge.
     pub fn depth(&self, x: usize, y: usize) -> usize {
         let to_edge = |at: usize| at.min(self.period - at.min(self.period));
