@@ -284,3 +284,22 @@ fn a_pixel_map_holds_the_numbers_of_its_picture() {
     };
     assert_eq!(number("pixel_map", "at_texel"), number("indices", "at"));
 }
+
+#[test]
+fn the_share_of_a_pixel_is_that_of_its_texels() {
+    let mask = "let m = pixel_map(\"tiles/source/grass_grey.png\")\n";
+    let sharp =
+        Drawing::of(&format!("{mask}texture t(uv: vec2) -> (number: float) {{ number = float(m.at(uv)) }}"));
+    let soft = Drawing::of(&format!("{mask}texture t(uv: vec2) -> (share: float) {{ share = m.share(uv) }}"));
+    let (texels, pixels) = (sharp.cells(512), soft.cells(128));
+    let share = |i: usize| {
+        let texel = |k: usize| texels[(i / 128 * 4 + k / 4) * 512 + i % 128 * 4 + k % 4][0];
+        (0..16).map(texel).sum::<f32>() / 16.0
+    };
+    let off: f32 = pixels.iter().enumerate().map(|(i, pixel)| (pixel[0] - share(i)).abs()).sum();
+    let sharp_off: f32 =
+        sharp.cells(128).iter().enumerate().map(|(i, pixel)| (pixel[0] - share(i)).abs()).sum();
+    let mean = off / pixels.len() as f32;
+    assert!(mean < 0.12 && off < 0.55 * sharp_off, "{mean}, {}", sharp_off / pixels.len() as f32);
+    assert_eq!(soft.worst().fetches, 8.0);
+}
