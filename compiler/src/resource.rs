@@ -12,6 +12,7 @@ mod materials;
 pub mod pixel_map;
 mod positions;
 mod probability;
+mod volumes;
 
 /// A resource of a program: one constructor call.
 #[derive(Clone, Debug, PartialEq)]
@@ -288,6 +289,9 @@ pub const SHARED: View = INTEGERS;
 /// The constant that says how a resource's views are sampled, where that is more than once.
 pub const ANISOTROPY: &str = "anisotropy";
 
+/// The most layers of a texture: what every GPU can hold.
+const MAX_LAYERS: i64 = 256;
+
 /// The longest side of a bake: what every GPU can hold.
 const MAX_BAKE: i32 = 8192;
 
@@ -320,6 +324,27 @@ pub static KINDS: &[Kind] = &[
         ],
         view: None,
         make: make_patterns,
+    },
+    Kind {
+        name: "patterns<3>",
+        constructor: "(paths: texts, depth: int, grid: ivec2 = 1, encoding: srgb | linear | normal = srgb, \
+                      filter: linear | nearest = linear) -> patterns",
+        doc: "Interchangeable blocks of slices, one layer a slice; mip levels average across slices too.",
+        gives: None,
+        fields: &[
+            Field { name: "layers", kind: FieldKind::View(LAYERS) },
+            Field { name: "means", kind: FieldKind::View(PIXELS) },
+            Field { name: "average", kind: FieldKind::Texel("means", "total") },
+            Field { name: "slices", kind: FieldKind::As("patterns", "total") },
+            Field { name: "count", kind: FieldKind::Constant },
+            Field { name: "depth", kind: FieldKind::Constant },
+            Field { name: "total", kind: FieldKind::Constant },
+            Field { name: "linear", kind: FieldKind::Constant },
+            Field { name: "taps", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: volumes::make,
     },
     Kind {
         name: "permutation",
@@ -453,6 +478,27 @@ pub fn made_by(row: usize) -> usize {
 /// Kinds of the language that are not built yet.
 pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites"];
 
+/// Kinds that have a dimension. In two it need not be written, in others it is part of the name.
+pub const DIMENSIONAL: &[&str] = &["indices", "patterns"];
+
+/// The row that a name stands for, with the dimension that is written after it.
+pub fn kind_named(name: &str, dimension: Option<u8>) -> Option<usize> {
+    let named = |kind: &Kind| match dimension {
+        None => kind.name == name,
+        Some(2) => kind.name == name && DIMENSIONAL.contains(&name),
+        Some(n) => kind.name.strip_prefix(name).is_some_and(|rest| rest == format!("<{n}>")),
+    };
+    KINDS.iter().position(named)
+}
+
+/// A kind's name without its dimension, and that.
+pub fn dimension_of(kind: &'static Kind) -> (&'static str, Option<u8>) {
+    match kind.name.split_once('<') {
+        Some((name, rest)) => (name, rest.trim_end_matches('>').parse().ok()),
+        None => (kind.name, DIMENSIONAL.contains(&kind.name).then_some(2)),
+    }
+}
+
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(a.wrap())?;
     let path = a.paths("path").into_iter().next().unwrap_or_default();
@@ -487,35 +533,60 @@ fn make_bake(a: &Arguments) -> Result<Made, Diagnostic> {
 
 fn make_patterns(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(Wrap::Clamp)?;
-    let paths = a.paths("paths");
-    let place = a.place("grid");
-    let (columns, rows) = match a.get("grid") {
-        Some((Argument::Number(c), _)) => (c.int(0), c.int(1)),
-        _ => (1, 1),
-    };
-    if columns < 1 || rows < 1 {
-        return Err(constructors::empty_grid(place, columns, rows));
+    let Cells { paths, grid, count, place } = Cells::of(a)?;
+    if !(1..=MAX_LAYERS).contains(&count) {
+        return Err(constructors::too_many_patterns(place, count));
     }
-    if paths.len() != 1 && (columns, rows) != (1, 1) {
-        return Err(constructors::grid_of_a_list(place));
-    }
-    let cells = i64::from(columns) * i64::from(rows);
-    let count = cells.saturating_mul(paths.len() as i64);
-    if !(1..=256).contains(&count) {
-        return Err(constructors::too_many_patterns(if cells > 1 { place } else { a.place("paths") }, count));
-    }
+    let taps = i32::from(sampler.anisotropy);
     Ok(Made {
-        recipe: Recipe::Patterns { paths, grid: [columns as u32, rows as u32], encoding: a.encoding() },
-        constants: vec![
-            ("count", Constant::ints(&[count as i32])),
-            ("linear", Constant::ints(&[i32::from(a.filter() == Filter::Linear)])),
-            ("taps", Constant::ints(&[i32::from(sampler.anisotropy)])),
-            ("normals", Constant::ints(&[i32::from(a.encoding() == Encoding::Normal)])),
-        ],
+        constants: pattern_constants(a, count, taps),
+        recipe: Recipe::Patterns { paths, grid, encoding: a.encoding() },
         // The library's nodes take the taps, so that they reach other patterns.
         sampler: Some(SamplerState { anisotropy: 1, ..sampler }),
         lender: None,
     })
+}
+
+/// The constants that patterns of any dimension have.
+fn pattern_constants(a: &Arguments, count: i64, taps: i32) -> Vec<(&'static str, Constant)> {
+    let linear = i32::from(a.filter() == Filter::Linear);
+    let normals = i32::from(a.encoding() == Encoding::Normal);
+    let all = [("count", count as i32), ("linear", linear), ("taps", taps), ("normals", normals)];
+    all.map(|(name, value)| (name, Constant::ints(&[value]))).into()
+}
+
+/// The pictures of patterns, and how they are cut.
+struct Cells {
+    paths: Vec<String>,
+    grid: [u32; 2],
+    /// How many cells all pictures have.
+    count: i64,
+    /// The argument that says how many.
+    place: Place,
+}
+
+impl Cells {
+    fn of(a: &Arguments) -> Result<Cells, Diagnostic> {
+        let paths = a.paths("paths");
+        let place = a.place("grid");
+        let (columns, rows) = match a.get("grid") {
+            Some((Argument::Number(c), _)) => (c.int(0), c.int(1)),
+            _ => (1, 1),
+        };
+        if columns < 1 || rows < 1 {
+            return Err(constructors::empty_grid(place, columns, rows));
+        }
+        if paths.len() != 1 && (columns, rows) != (1, 1) {
+            return Err(constructors::grid_of_a_list(place));
+        }
+        let cells = i64::from(columns) * i64::from(rows);
+        Ok(Cells {
+            grid: [columns as u32, rows as u32],
+            count: cells.saturating_mul(paths.len() as i64),
+            place: if cells > 1 { place } else { a.place("paths") },
+            paths,
+        })
+    }
 }
 
 fn make_ramp(a: &Arguments) -> Result<Made, Diagnostic> {

@@ -7,7 +7,7 @@ use super::wire::Wire;
 use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, limits, names, nodes, types as errors};
 use crate::graph::{Scalar, Texel, Type, Value};
-use crate::resource::KINDS;
+use crate::resource::{KINDS, dimension_of};
 use smallvec::{SmallVec, smallvec};
 use std::rc::Rc;
 use texgraph_grammar::syntax::{Dim, Expr, ExprKind, Input, Name, TypeKind};
@@ -218,6 +218,10 @@ impl<'a> Checker<'a> {
                 let Some(given) = slot.filter(|_| varies) else { continue };
                 let found = match given.wire {
                     Wire::Value(value) => f.builder.ty(value).width(),
+                    Wire::Resource(ref resource) => match dimension_of(&KINDS[resource.kind]).1 {
+                        Some(dimension) => dimension,
+                        None => continue,
+                    },
                     _ => continue,
                 };
                 if found > 1 && width > 1 && found != width {
@@ -410,7 +414,7 @@ impl<'a> Checker<'a> {
         for name in library.callable_names() {
             let first =
                 library.callables(name).iter().filter_map(|callable| self.head(*callable)?.inputs.first());
-            if first.into_iter().any(|input| types::kind_of(&input.ty) == Some(kind)) {
+            if first.into_iter().any(|input| types::is_kind(&input.ty, kind)) {
                 readers.push(name.to_owned());
             }
         }

@@ -9,7 +9,7 @@ use super::{Checker, Frame, Outcome};
 use crate::diagnostic::{Place, arguments as sentences, names, nodes};
 use crate::graph::{Constant, FunctionId, Operation, Texel, Type, Value, View};
 use crate::library::{Callable, Library};
-use crate::resource::KINDS;
+use crate::resource::{DIMENSIONAL, KINDS};
 use smallvec::SmallVec;
 use smol_str::SmolStr;
 use std::borrow::Cow;
@@ -231,6 +231,18 @@ impl<'a> Checker<'a> {
             f.failed |= f.waiting.is_empty();
             self.words(f, candidates, given);
             return Wire::Unknown;
+        }
+        if let [Callable::Constructor(kind)] = candidates
+            && let Some(dim) = callee.dim
+            && DIMENSIONAL.contains(&KINDS[*kind].name)
+        {
+            return match types::named_in(KINDS[*kind].name, dim, &f.dims, callee.place) {
+                Ok(kind) => {
+                    let callee = Callee { dim: None, ..callee };
+                    self.call_one_of(f, &[Callable::Constructor(kind)], callee, given, place)
+                }
+                Err(error) => self.report(f, error),
+            };
         }
         if let [callable] = candidates
             && let Some(head) = self.head(*callable)
@@ -482,7 +494,7 @@ pub(super) fn accepts(f: &Frame<'_>, input: &texgraph_grammar::syntax::Input, gi
         (Wire::Matrix(columns), None) => {
             types::matrix(&input.ty).is_some_and(|size| usize::from(size) == columns.len())
         }
-        (Wire::Resource(resource), None) => types::kind_of(&input.ty) == Some(resource.kind),
+        (Wire::Resource(resource), None) => types::is_kind(&input.ty, resource.kind),
         (Wire::Word(_) | Wire::None | Wire::Text(_) | Wire::List(_), None) => true,
         _ => false,
     }

@@ -7,6 +7,7 @@ use crate::diagnostic::{Place, folds, imports, names, rates, types as type_error
 use crate::graph::{Builder, Constant, Param, ParamId, Scalar, Type};
 use crate::library::Callable;
 use crate::module::Module;
+use crate::resource::{DIMENSIONAL, KINDS, LATER};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -408,11 +409,13 @@ impl<'a> Checker<'a> {
 fn overload_of(item: &Item) -> &str {
     let first = node_of(item).and_then(|node| node.inputs.first());
     match first.map(|input| &input.ty.kind) {
-        Some(texgraph_grammar::syntax::TypeKind::Named { name, .. })
-            if crate::resource::KINDS.iter().any(|kind| kind.name == name.text)
-                || crate::resource::LATER.contains(&name.text.as_str()) =>
-        {
-            &name.text
+        Some(texgraph_grammar::syntax::TypeKind::Named { name, dim }) => {
+            match super::types::named(&name.text, dim.as_ref()) {
+                Some(kind) => KINDS[kind].name,
+                None if DIMENSIONAL.contains(&name.text.as_str()) => &name.text,
+                None if LATER.contains(&name.text.as_str()) => &name.text,
+                None => "",
+            }
         }
         _ => "",
     }

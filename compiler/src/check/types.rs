@@ -3,7 +3,7 @@
 use super::wire::Wire;
 use crate::diagnostic::{Diagnostic, Place, types};
 use crate::graph::{Scalar, Type};
-use crate::resource::{KINDS, LATER};
+use crate::resource::{DIMENSIONAL, KINDS, LATER, dimension_of, kind_named};
 use smallvec::SmallVec;
 use smol_str::SmolStr;
 use std::sync::Arc;
@@ -109,11 +109,21 @@ pub fn matrix(ty: &syntax::Type) -> Option<u8> {
     }
 }
 
-/// The row of the table of kinds that a type names.
-pub fn kind_of(ty: &syntax::Type) -> Option<usize> {
+/// Whether a type names a row of the table of kinds. A dimension variable stands for any dimension.
+pub fn is_kind(ty: &syntax::Type, kind: usize) -> bool {
     match &ty.kind {
-        TypeKind::Named { name, .. } => KINDS.iter().position(|kind| kind.name == name.text),
-        _ => None,
+        TypeKind::Named { name, dim: Some(Dim::Name(_)) } => dimension_of(&KINDS[kind]).0 == name.text,
+        TypeKind::Named { name, dim } => named(&name.text, dim.as_ref()) == Some(kind),
+        _ => false,
+    }
+}
+
+/// The row of the table of kinds that a name with a dimension means; none if that is a variable.
+pub fn named(name: &str, dim: Option<&Dim>) -> Option<usize> {
+    match dim {
+        None => kind_named(name, None),
+        Some(Dim::Number(n, _)) => kind_named(name, Some(u8::try_from(*n).ok()?)),
+        Some(Dim::Name(_)) => None,
     }
 }
 
@@ -127,7 +137,10 @@ pub fn resolve(ty: &syntax::Type, dims: &Dims<'_>, file: u32) -> Result<Declared
                 Ok(Declared::Vector(scalar, width_of(&name.text, dim.as_ref(), dims, place)?))
             }
             Some(_) => Err(types::unknown_type(place, &show(ty), Some(name.text.to_string()))),
-            None => resolve_other(&name.text, place),
+            None => match dim {
+                Some(dim) => named_in(&name.text, dim, dims, place).map(Declared::Resource),
+                None => resolve_other(&name.text, place),
+            },
         },
         TypeKind::Choice(words) => Ok(Declared::Choice(words.iter().map(|w| w.text.to_string()).collect())),
         TypeKind::Node { inputs, output } => {
@@ -157,6 +170,17 @@ fn part(ty: &syntax::Type, dims: &Dims<'_>, file: u32) -> Result<Declared, Diagn
         fine @ (Declared::Vector(..) | Declared::Matrix(_) | Declared::Texel) => Ok(fine),
         _ => Err(types::type_not_allowed(Place { file, span: ty.span }, &show(ty), "a node's type")),
     }
+}
+
+/// The row of the table of kinds that a name with a dimension means.
+pub fn named_in(name: &str, dim: &Dim, dims: &Dims<'_>, place: Place) -> Result<usize, Diagnostic> {
+    if !DIMENSIONAL.contains(&name) {
+        let shown = format!("{name}<{}>", show_dim(dim));
+        return Err(types::unknown_type(place, &shown, Some(name.to_owned())));
+    }
+    let dimension = width_of(name, Some(dim), dims, place)?;
+    let unknown = || crate::diagnostic::unsupported::not_yet(place, &format!("`{name}<{dimension}>`"));
+    kind_named(name, Some(dimension)).ok_or_else(unknown)
 }
 
 fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
@@ -204,11 +228,17 @@ pub fn width_of(generic: &str, dim: Option<&Dim>, dims: &Dims<'_>, place: Place)
 pub fn show(ty: &syntax::Type) -> String {
     match &ty.kind {
         TypeKind::Named { name, dim: None } => name.text.to_string(),
-        TypeKind::Named { name, dim: Some(Dim::Name(n)) } => format!("{}<{}>", name.text, n.text),
-        TypeKind::Named { name, dim: Some(Dim::Number(n, _)) } => format!("{}<{n}>", name.text),
+        TypeKind::Named { name, dim: Some(dim) } => format!("{}<{}>", name.text, show_dim(dim)),
         TypeKind::Choice(words) => words.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(" | "),
         TypeKind::Node { .. } => "node".to_owned(),
         TypeKind::Record(_) => "record".to_owned(),
+    }
+}
+
+fn show_dim(dim: &Dim) -> String {
+    match dim {
+        Dim::Name(name) => name.text.to_string(),
+        Dim::Number(n, _) => n.to_string(),
     }
 }
 

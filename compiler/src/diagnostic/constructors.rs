@@ -43,6 +43,28 @@ pub fn too_many_patterns(place: Place, count: i64) -> Diagnostic {
     .help("a pattern is a layer of a texture array, which has at most 256")
 }
 
+/// More slices of patterns in space than one texture may hold.
+pub fn too_many_slices(place: Place, count: i64, depth: u32) -> Diagnostic {
+    Diagnostic::new(
+        "E0554",
+        place,
+        format!("these are {count} slices, from 1 to 256 are possible"),
+        format!("{} patterns of {depth} slices each", count / i64::from(depth)),
+    )
+    .help("a slice is a layer of a texture array, which has at most 256")
+}
+
+/// Slices that make no whole number of patterns.
+pub fn uneven_depth(place: Place, depth: u32, count: i64) -> Diagnostic {
+    Diagnostic::new(
+        "E0552",
+        place,
+        format!("{count} slices are no whole number of patterns of {depth}"),
+        format!("{} would be left over", count % i64::from(depth)),
+    )
+    .help("`grid` counts the slices of all patterns, `depth` those of one")
+}
+
 /// Rows of different lengths, or none.
 pub fn ragged_rows(place: Place) -> Diagnostic {
     Diagnostic::new("E0555", place, "the rows of a map must have one length, at least 1", "this list")

@@ -39,6 +39,20 @@ pub enum Recipe {
         /// How the numbers are read.
         encoding: Encoding,
     },
+    /// Patterns in space, one layer a slice: layer pattern·depth + slice of field `layers`, of which
+    /// level l holds the mean of the slice's group of 2^l, the slices of a pattern being grouped from
+    /// its first on (a group that is not full has the mean of what it has). Field `means`: the mean
+    /// of each slice, a texel each in one row, then that of all, then that of each pattern.
+    Volumes {
+        /// Picture files: one with `grid` cells, or one per slice.
+        paths: Vec<String>,
+        /// Columns and rows of the one picture; `[1, 1]` for a list of files. Row by row.
+        grid: [u32; 2],
+        /// Slices of one pattern, 1 to 256.
+        depth: u32,
+        /// How the numbers are read.
+        encoding: Encoding,
+    },
     /// Four independent permutations of 0..size: entry i holds σ₀(i)…σ₃(i). A row of the program's
     /// [`Recipe::Tables`].
     Permutation {

@@ -105,7 +105,12 @@ fn make(
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     match recipe {
         Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
-        Recipe::Patterns { paths, grid, encoding } => patterns::make(project, place, paths, *grid, *encoding),
+        Recipe::Patterns { paths, grid, encoding } => {
+            patterns::make(project, place, paths, *grid, None, *encoding)
+        }
+        Recipe::Volumes { paths, grid, depth, encoding } => {
+            patterns::make(project, place, paths, *grid, Some(*depth), *encoding)
+        }
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         // A row of the shared tables, and nothing of its own.
         Recipe::Probability { .. } => Ok(Vec::new()),

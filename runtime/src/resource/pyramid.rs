@@ -8,7 +8,7 @@
 use super::encoding::Writer;
 use super::table::Made;
 use glam::Vec4;
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
 use texgraph_compiler::manifest::{Format, Table};
 
@@ -21,11 +21,25 @@ pub fn build(
     layers: u32,
     texel: impl Fn(u32, u32, u32) -> Vec4 + Sync,
 ) -> Made {
-    let table = Table::mipmapped(format, size, layers);
+    build_blocks(field, format, size, [layers, 1], texel)
+}
+
+/// Builds all levels of blocks, each of so many layers, its slices. Level l of a slice is the mean of
+/// the group of 2^l slices that it belongs to, counted from the block's first; of those there are.
+pub fn build_blocks(
+    field: &'static str,
+    format: Format,
+    size: [u32; 2],
+    [blocks, depth]: [u32; 2],
+    texel: impl Fn(u32, u32, u32) -> Vec4 + Sync,
+) -> Made {
+    let table = Table::mipmapped(format, size, blocks * depth);
     let mut bytes = vec![0; table.bytes() as usize];
     let writer = Writer::new(format);
-    by_layer(&table, &mut bytes).into_par_iter().enumerate().for_each(|(layer, levels)| {
-        write_layer(&writer, size, levels, |x, y| texel(layer as u32, x, y));
+    let mut layers = by_layer(&table, &mut bytes);
+    layers.par_chunks_mut(depth as usize).enumerate().for_each(|(block, slices)| {
+        let first = block as u32 * depth;
+        write_block(&writer, size, slices, |slice, x, y| texel(first + slice, x, y));
     });
     Made { field, table, bytes }
 }
@@ -44,25 +58,58 @@ fn by_layer<'a>(table: &Table, mut bytes: &'a mut [u8]) -> Vec<Vec<&'a mut [u8]>
     layers
 }
 
-/// Writes one layer's levels, the largest first.
-fn write_layer(
+/// Writes the levels of a block's slices, the largest first.
+fn write_block(
     writer: &Writer,
     size: [u32; 2],
-    levels: Vec<&mut [u8]>,
-    texel: impl Fn(u32, u32) -> Vec4 + Sync,
+    slices: &mut [Vec<&mut [u8]>],
+    texel: impl Fn(u32, u32, u32) -> Vec4 + Sync,
 ) {
-    let mut above: Option<Plane> = None;
-    for (index, bytes) in levels.into_iter().enumerate() {
-        if index == 0 {
-            write_level(writer, size[0], bytes, &texel);
-            continue;
+    let levels = slices.first().map_or(0, Vec::len);
+    let mut above: Vec<Plane> = Vec::new();
+    for level in 0..levels {
+        if level > 0 {
+            let groups = 0..(slices.len() as u32).div_ceil(1 << level);
+            let grouped = groups.into_par_iter().map(|group| {
+                let pair = Pair::new(slices.len() as u32, level, group);
+                match above.first() {
+                    None => halve(size, |x, y| pair.mean(|slice| texel(slice, x, y))),
+                    Some(first) => {
+                        halve(first.size, |x, y| pair.mean(|group| above[group as usize].texel(x, y)))
+                    }
+                }
+            });
+            above = grouped.collect();
         }
-        let plane = match &above {
-            None => halve(size, &texel),
-            Some(plane) => halve(plane.size, |x, y| plane.texel(x, y)),
-        };
-        write_level(writer, plane.size[0], bytes, |x, y| plane.texel(x, y));
-        above = Some(plane);
+        slices.par_iter_mut().enumerate().for_each(|(slice, levels)| match above.get(slice >> level) {
+            None => write_level(writer, size[0], levels[level], |x, y| texel(slice as u32, x, y)),
+            Some(plane) => write_level(writer, plane.size[0], levels[level], |x, y| plane.texel(x, y)),
+        });
+    }
+}
+
+/// The one or two groups of slices that a group of the next level consists of.
+struct Pair {
+    first: u32,
+    /// The second group's share; none where there is no second.
+    second: Option<f32>,
+}
+
+impl Pair {
+    /// For a group of 2^level slices of a block.
+    fn new(depth: u32, level: usize, group: u32) -> Pair {
+        let half = 1 << (level - 1);
+        let begins = group * 2 * half;
+        let second = depth.saturating_sub(begins + half).min(half);
+        Pair {
+            first: group * 2,
+            second: (second > 0).then(|| second as f32 / (half + second) as f32),
+        }
+    }
+
+    fn mean(&self, part: impl Fn(u32) -> Vec4) -> Vec4 {
+        let first = part(self.first);
+        self.second.map_or(first, |share| first.lerp(part(self.first + 1), share))
     }
 }
 
