@@ -2,6 +2,7 @@
 //! proportions in which they draw, and what they cost.
 
 mod animation;
+mod cost;
 mod distribution;
 mod layers;
 mod splat;
