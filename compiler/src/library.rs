@@ -16,6 +16,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/volumes.tex", include_str!("../std/volumes.tex")),
     ("std/draws.tex", include_str!("../std/draws.tex")),
     ("std/placing.tex", include_str!("../std/placing.tex")),
+    ("std/material_maps.tex", include_str!("../std/material_maps.tex")),
     ("std/transition.tex", include_str!("../std/transition.tex")),
     ("std/animation.tex", include_str!("../std/animation.tex")),
     ("std/splat.tex", include_str!("../std/splat.tex")),
