@@ -33,7 +33,7 @@ def save(picture, name):
 
 
 def examples():
-    for name in ["stamps", "terrain", "weave", "truchet", "landscape", "flowers", "ground", "decals"]:
+    for name in ["stamps", "terrain", "weave", "truchet", "landscape", "flowers", "ground", "decals", "tufts"]:
         save(render(f"examples/{name}.tex", 512), f"{name if name != 'ground' else 'layers'}.jpg")
 
 
