@@ -8,3 +8,4 @@ mod layers;
 mod splat;
 mod support;
 mod transition;
+mod volumes;
