@@ -219,3 +219,61 @@ fn four_cells_are_enough_for_small_patterns() {
     assert!(worst < 1e-3, "{worst}");
     assert!(difference([&text(1.0), &text(1.4)]) > 0.1, "size proves nothing");
 }
+
+/// White patterns, a quarter of them blank, in a view of so many cells a pixel: the mean of its alpha.
+fn mean_alpha(transform: &str, cells_a_pixel: f64) -> f64 {
+    const PIXELS: u32 = 128;
+    let text = format!(
+        "let white = patterns(\"white.png\")\n\
+         texture t(uv: vec2) -> (shown: vec4) {{\n\
+         let (cell, at) = tile_map(uv * {:?}, 1)\n\
+         shown = white.tile_transform(cell, at, |c| min(virtual_index(c, 4), 1) - 1, {transform})\n}}",
+        cells_a_pixel * f64::from(PIXELS)
+    );
+    let picture = drawn(folder().path(), &text, 1, PIXELS);
+    picture.pixels.iter().map(|pixel| f64::from(pixel[3])).sum::<f64>() / picture.pixels.len() as f64
+}
+
+/// The mean of a function over the unit square.
+fn integral(f: impl Fn(f64, f64) -> f64) -> f64 {
+    let places = (0..100).map(|i| (f64::from(i) + 0.5) / 100.0);
+    places.clone().flat_map(|y| places.clone().map(move |x| (x, y))).map(|(x, y)| f(x, y)).sum::<f64>() / 1e4
+}
+
+/// From afar patterns keep the mean of what they cover, blank ones counted.
+#[test]
+fn what_is_shrunk_keeps_its_mean_from_afar() {
+    let transform = "scale: |c| 0.2 + virtual_random(c, stream: 1).x,\n\
+                     rotation: |c| virtual_random(c, stream: 1).y * 1turn,\n\
+                     translation: |c| virtual_random(c, stream: 1).zw";
+    let covered = integral(|scale, turn| {
+        let (sine, cosine) = (TAU * turn).sin_cos();
+        (0.2 + scale).min(1.0 / (sine.abs() + cosine.abs())).powi(2)
+    });
+    for (cells, tolerance) in [(0.2481, 4.0), (0.7323, 4.0), (1.3717, 4.0), (64.0, 1.0)] {
+        let mean = mean_alpha(transform, cells);
+        let drift = (mean - 0.75 * covered) * 255.0;
+        println!("{cells} cells a pixel: {drift:.2}/255");
+        assert!(drift.abs() < tolerance, "{cells} cells a pixel: {drift:.2}/255");
+    }
+}
+
+#[test]
+fn what_overflows_keeps_its_mean_from_afar() {
+    for scale in [0.6, 1.2] {
+        let transform = format!(
+            "scale: |c| {scale}, translation: |c| virtual_random(c, stream: 1).zw,\n\
+             overflow: neighbours, largest: {scale}"
+        );
+        // Where in a cell a middle may lie so that its pattern covers a place.
+        let across = |x: f64| ((x + scale / 2.0).min(1.0) - (x - scale / 2.0).max(0.0)).max(0.0);
+        let covered = integral(|x, y| {
+            let cells = (-1..=1).flat_map(|j| (-1..=1).map(move |i| [f64::from(i), f64::from(j)]));
+            let hole = |[i, j]: [f64; 2]| 1.0 - 0.75 * across(x - i) * across(y - j);
+            1.0 - cells.map(hole).product::<f64>()
+        });
+        let drift = (mean_alpha(&transform, 64.0) - covered) * 255.0;
+        println!("of size {scale}: {drift:.2}/255");
+        assert!(drift.abs() < 1.0, "of size {scale}: {drift:.2}/255");
+    }
+}

@@ -4,7 +4,9 @@
 mod animation;
 mod cost;
 mod distribution;
+mod far;
 mod layers;
+mod material;
 mod splat;
 mod support;
 mod transition;

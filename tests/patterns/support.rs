@@ -8,6 +8,7 @@ use texgraph_runtime::cpu;
 use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
+use texgraph_runtime::settings::Settings;
 
 /// What stands before each text: sixteen patterns.
 pub const GRASS: &str = "let grass = patterns(\"tiles/grass.png\", grid: ivec2(4, 4))\n";
@@ -26,9 +27,15 @@ impl Drawing {
 
     /// Of a text that reads its files in a folder.
     pub fn beside(folder: &Path, text: &str) -> Drawing {
+        Drawing::output(folder, text, None)
+    }
+
+    /// The same, but only an output of its texture.
+    pub fn output(folder: &Path, text: &str, output: Option<&str>) -> Drawing {
         let files: HashMap<String, String> = [("main.tex".to_owned(), text.to_owned())].into();
         let library = Library::standard().expect("the library is right");
-        let mut compiled = compile(&library, "main.tex", &files, &Options::default())
+        let outputs = output.map(|output| vec![output.to_owned()]);
+        let mut compiled = compile(&library, "main.tex", &files, &Options { outputs, ..Options::default() })
             .unwrap_or_else(|f| panic!("{}", render::human(&f.sources, &f.diagnostics)));
         let tables = load(&mut compiled.program, &Project::new(&folder.join("main.tex"), false))
             .unwrap_or_else(|found| panic!("{}", render::human(&compiled.sources, &found)));
@@ -42,7 +49,16 @@ impl Drawing {
 
     /// The first output of a region of `uv`.
     pub fn seen(&self, size: [u32; 2], region: [f64; 4]) -> Vec<[f32; 4]> {
-        let request = Request { region, ..Request::new(size) };
+        self.seen_with("", size, region)
+    }
+
+    /// The same with a param set, `name=value`.
+    pub fn seen_with(&self, setting: &str, size: [u32; 2], region: [f64; 4]) -> Vec<[f32; 4]> {
+        let mut settings = Settings::new();
+        if !setting.is_empty() {
+            settings.parse(&self.compiled.program.manifest, setting).expect("it can be set");
+        }
+        let request = Request { region, settings, ..Request::new(size) };
         let picture = cpu::render(&self.compiled.program, &self.tables, &request, &|_| {});
         picture.unwrap_or_else(|error| panic!("{error}")).pixels
     }

@@ -11,7 +11,7 @@ use half::f16;
 use rayon::iter::ParallelIterator;
 use rayon::slice::ParallelSlice;
 use texgraph_compiler::graph::ResourceView;
-use texgraph_compiler::intrinsic::Lanes;
+use texgraph_compiler::intrinsic::{LANES, Lanes};
 use texgraph_compiler::manifest::{self, Filter, Format, Table, Wrap};
 
 /// A texture with its sampler.
@@ -80,23 +80,28 @@ impl Texture {
         self.levels[0].size
     }
 
-    /// Texels of level 0, four floats or four ints; a place outside is moved inside.
-    pub fn fetch(&self, [x, y]: [&Lanes; 2], layer: &Lanes, mask: Mask, to: &mut [Lanes; 4]) {
+    /// Texels of level 0, four floats or four ints, of which only the wanted components are written;
+    /// a place outside is moved inside.
+    pub fn fetch(
+        &self,
+        [x, y]: [&Lanes; 2],
+        layer: &Lanes,
+        mask: Mask,
+        wanted: [bool; 4],
+        to: &mut [Lanes; 4],
+    ) {
         let level = &self.levels[0];
-        for i in lanes_of(mask) {
-            let at = IVec2::new(x[i] as i32, y[i] as i32).clamp(IVec2::ZERO, level.size - 1);
-            let index = level.index((layer[i] as i32).clamp(0, level.layers - 1))
-                + (at.y * level.size.x + at.x) as usize;
-            let texel = match &self.texels {
-                Texels::Float(texels) => {
-                    texels.get(index).copied().unwrap_or(Vec4::ZERO).to_array().map(f32::to_bits)
-                }
-                Texels::Int(texels) => {
-                    texels.get(index).copied().unwrap_or(IVec4::ZERO).to_array().map(|x| x as u32)
-                }
-            };
-            for (to, component) in to.iter_mut().zip(texel) {
-                to[i] = component;
+        let (last, lowest) = (level.size - 1, level.layers - 1);
+        let place: [usize; LANES] = std::array::from_fn(|i| {
+            let (x, y) = ((x[i] as i32).clamp(0, last.x), (y[i] as i32).clamp(0, last.y));
+            level.index((layer[i] as i32).clamp(0, lowest)) + (y * level.size.x + x) as usize
+        });
+        for (c, to) in to.iter_mut().enumerate().filter(|(c, _)| wanted[*c]) {
+            for i in lanes_of(mask) {
+                to[i] = match &self.texels {
+                    Texels::Float(texels) => texels.get(place[i]).map_or(0, |texel| texel[c].to_bits()),
+                    Texels::Int(texels) => texels.get(place[i]).map_or(0, |texel| texel[c] as u32),
+                };
             }
         }
     }

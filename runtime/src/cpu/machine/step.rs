@@ -55,7 +55,8 @@ impl Machine {
             Step::Texel { view, at, layer, to } => {
                 match texture(*view) {
                     Some(texture) => {
-                        texture.fetch(at.map(lanes), lanes(*layer), self.mask, &mut self.vector);
+                        let wanted = to.map(|to| to.is_some());
+                        texture.fetch(at.map(lanes), lanes(*layer), self.mask, wanted, &mut self.vector);
                     }
                     None => *self.vector = [ZERO; 4],
                 }
