@@ -175,7 +175,7 @@ fn what_is_gone_is_gone() {
 
 #[test]
 fn maps_and_sprites_that_can_not_be_are_refused() {
-    for (grid, layers) in [([1, 8], 1), ([8, 4097], 1), ([8, 8], 0), ([8, 8], 9)] {
+    for (grid, layers) in [([1, 8], 1), ([8, 4097], 1), ([8, 8], 0), ([8, 8], 9), ([4096, 4096], 5)] {
         assert_eq!(Positions::new(grid, layers, 1).err(), Some(Refused::Map { grid, layers }));
     }
     let mut map = Positions::new(GRID, 1, PATTERNS).expect("it can be");

@@ -93,6 +93,30 @@ fn dithering_takes_the_second_value_in_proportion_along_the_blend() {
     }
 }
 
+/// The same with σ, whose numbers are the middles of 256 equal parts.
+#[test]
+fn dithering_by_a_permutation_keeps_the_proportions() {
+    for stream in [0, 5] {
+        let drawing = Drawing::of(&format!(
+            "let sigma = permutation(256, seed: 3)\n\
+             texture t(uv: vec2) -> (second: vec2) {{\n\
+                 second = vec2(dither(ifloor(uv * 512.0), vec2(0.25, 0.625), sigma: sigma, stream: {stream}))\n\
+             }}"
+        ));
+        // Two digits of each coordinate: four texels, as the walk of a pick takes.
+        assert_eq!(drawing.worst().fetches, 4.0);
+        let pixels = drawing.cells(SIDE);
+        for (axis, b) in [(0, 0.25), (1, 0.625)] {
+            let found = count(&pixels, |pixel| pixel[axis] > 0.0);
+            assert!(deviations(found, pixels.len(), b) < FAR, "{axis}: {found} of {}", pixels.len());
+        }
+        let both = count(&pixels, |pixel| pixel[0] * pixel[1] > 0.0);
+        let share = both as f64 / pixels.len() as f64;
+        // The four permutations meet in 256 places only, so axes are independent to about 1/16 of that.
+        assert!((share - 0.25 * 0.625).abs() < 0.05, "{share}");
+    }
+}
+
 /// Axes draw apart, and apart from the pick of a tile: chi-square over all combinations.
 #[test]
 fn draws_of_a_cell_are_independent() {
@@ -159,6 +183,27 @@ fn areas_are_dithered_by_the_formula() {
             assert!(off <= FAR * f64::sqrt(variance), "{n}, {softness}: {area} is {found}, not {expected}");
         }
     }
+}
+
+/// In the far corner of a map of 65,536² cells: all by the formula, without a border in between.
+#[test]
+fn areas_are_exact_in_the_far_corner() {
+    let drawing = Drawing::of(&format!(
+        "{MAP}texture t(uv: vec2) -> (area: float) {{\n\
+             let cell = ifloor(uv * 512.0) + 65024 + ivec2(0, -16384)\n\
+             area = float(areas.dithered_area(cell, 65536, softness: 0.02))\n\
+         }}"
+    ));
+    let pixels = drawing.cells(SIDE);
+    let mut borders = 0;
+    for (i, pixel) in (0..).zip(&pixels) {
+        let cell = [i % SIDE + 65024, i / SIDE + 65024 - 16384];
+        let p = probability(cell, 65536, 0.02, pixel[0]);
+        assert!(p > 0.0, "cell {cell:?} is {pixel:?}");
+        borders += usize::from(p < 1.0);
+    }
+    // Borders are a fiftieth of an area wide: 437 cells across and 328 down.
+    assert!(borders > 0 && borders < pixels.len(), "{borders}");
 }
 
 #[test]

@@ -35,12 +35,12 @@ pub fn depth(levels: u32) -> u32 {
     [1, 2, 4].into_iter().find(|bits| levels <= 1 << bits).unwrap_or(8)
 }
 
-/// Blocks in a row of the pool, whose texels are 128 bits; a row has at most 4096.
+/// Blocks in a row of the pool, whose texels are 128 bits; a row has at most 4096. `block` is 4 to 64.
 pub fn across(block: u32, depth: u32) -> u32 {
     4096 / texels(block, depth)
 }
 
-/// Texels of the pool for a block.
+/// Texels of the pool for a block, at least 1.
 pub fn texels(block: u32, depth: u32) -> u32 {
-    (block * block * depth).div_ceil(128)
+    block.saturating_mul(block).saturating_mul(depth).div_ceil(128).max(1)
 }

@@ -36,6 +36,7 @@ mod file;
 pub(super) use file::make;
 pub use file::open;
 
+use super::table::MAX_BYTES;
 use cells::{Cover, TEXEL};
 use changes::Changes;
 use serde::Deserialize;
@@ -99,7 +100,7 @@ pub enum Refused {
         /// The side of the upright square around it, in cells.
         around: f32,
     },
-    /// A map of so many cells or layers can't be.
+    /// A map of so many cells or layers can't be: its texels may take 1 GiB.
     Map {
         /// Cells across and down: 2 to 4096.
         grid: [u32; 2],
@@ -192,6 +193,9 @@ impl Positions {
             return Err(Refused::Map { grid, layers });
         }
         let cells = grid[0] as usize * grid[1] as usize * layers as usize;
+        if (cells * TEXEL) as u64 > MAX_BYTES {
+            return Err(Refused::Map { grid, layers });
+        }
         Ok(Positions {
             grid,
             layers,
