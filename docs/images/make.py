@@ -91,6 +91,42 @@ def wires():
     save(strip, "wires.png")
 
 
+def apart(sheet, side, gap=4):
+    """A sheet of 4×4 tiles with gaps between them, each tile as large as is wanted."""
+    tile = sheet.width // 4
+    picture = Image.new("RGB", (4 * side + 3 * gap, 4 * side + 3 * gap), "white")
+    for i in range(16):
+        x, y = i % 4, i // 4
+        cut = sheet.crop((x * tile, y * tile, (x + 1) * tile, (y + 1) * tile))
+        picture.paste(cut.resize((side, side), Image.Resampling.BOX), (x * (side + gap), y * (side + gap)))
+    return picture
+
+
+def tile_sets():
+    """The sheets of the landscape; the borders of one of them over a chequer; an empty sheet."""
+    sheets = [Image.open(ROOT / f"examples/tiles/{name}_photo.png").convert("RGB") for name in ["sand", "grass", "shore"]]
+    strip = Image.new("RGB", (3 * 292 + 2 * 16, 292), "white")
+    for i, sheet in enumerate(sheets):
+        strip.paste(apart(sheet, 70), (i * 308, 0))
+    save(strip, "tile_sets.jpg")
+    with tempfile.TemporaryDirectory() as folder:
+        border, layout = Path(folder) / "border.png", Path(folder) / "layout.png"
+        tiles = [COMMAND, "tiles"]
+        photo = ROOT / "examples/tiles/grass_photo.png"
+        subprocess.run([*tiles, "transition", photo, "--grid", "4x4", "--border", "-o", border], check=True)
+        subprocess.run([*tiles, "layout", "--size", "70", "-o", layout], check=True)
+        sheet = Image.open(border).convert("RGBA")
+        chequer = Image.new("RGBA", sheet.size)
+        for y in range(0, sheet.height, 12):
+            for x in range(0, sheet.width, 12):
+                light = 208 if (x + y) // 12 % 2 else 240
+                chequer.paste((light, light, light, 255), (x, y, x + 12, y + 12))
+        strip = Image.new("RGB", (2 * 292 + 16, 292), "white")
+        strip.paste(apart(Image.alpha_composite(chequer, sheet).convert("RGB"), 70), (0, 0))
+        strip.paste(apart(Image.open(layout).convert("RGB"), 70), (308, 0))
+        save(strip, "tile_codes.png")
+
+
 if __name__ == "__main__":
     if not COMMAND.exists():
         sys.exit("build it first: cargo build --release")
@@ -100,3 +136,4 @@ if __name__ == "__main__":
     wires()
     rows()
     signboard()
+    tile_sets()
