@@ -41,7 +41,7 @@ impl Family {
         check_photo(photo, side)?;
         let geometry = Geometry::new(side);
         let photo = &evened(photo, side);
-        let frame = frame(photo, geometry, &mut Random::new(seed, 0));
+        let frame = frame(&evened(photo, side / 8), geometry, &mut Random::new(seed, 0));
         let places = choose(photo, &frame, geometry, count, seed);
         let tile = |place: &[u32; 2]| tile(photo, &frame, geometry, *place);
         Ok(Family { tiles: places.par_iter().map(tile).collect() })
