@@ -38,7 +38,9 @@ fn folder() -> tempfile::TempDir {
     let picture = image::RgbaImage::from_fn((8 * SIDE) as u32, (rows * SIDE) as u32, |x, y| {
         let (x, y) = (x as usize, y as usize);
         let slice = y / SIDE * 8 + x / SIDE;
-        image::Rgba(texel(slice / DEPTH, [x % SIDE, y % SIDE, slice % DEPTH]).map(|x| (x * 255.0).round() as u8))
+        image::Rgba(
+            texel(slice / DEPTH, [x % SIDE, y % SIDE, slice % DEPTH]).map(|x| (x * 255.0).round() as u8),
+        )
     });
     picture.save(folder.path().join("slices.png")).expect("a picture is written");
     folder
@@ -156,7 +158,8 @@ fn nothing_jumps_from_level_to_level_or_from_slice_to_slice() {
 fn edges_are_borders_or_the_pattern_again_or_nothing() {
     let folder = folder();
     let seen = |edges: &str, place: &str| {
-        let body = format!("seen = blocks.reference(0, vec3({place}) + vec3(uv, 0.0) * 0.000001, edges: {edges})");
+        let body =
+            format!("seen = blocks.reference(0, vec3({place}) + vec3(uv, 0.0) * 0.000001, edges: {edges})");
         drawing(folder.path(), "", &body).cells(1)[0]
     };
     let corner = texel(0, [0, 0, 0]);
@@ -177,7 +180,8 @@ fn edges_are_borders_or_the_pattern_again_or_nothing() {
 #[test]
 fn picks_are_clamped_and_the_blank_one_is_not_fetched() {
     let folder = folder();
-    let seen = |pick: &str| drawing(folder.path(), "", &format!("seen = blocks.reference({pick}, vec3(uv, 0.3))"));
+    let seen =
+        |pick: &str| drawing(folder.path(), "", &format!("seen = blocks.reference({pick}, vec3(uv, 0.3))"));
     assert_eq!(seen("7").cells(8), seen("1").cells(8));
     let blank = seen("-1");
     assert_eq!((blank.cells(4), blank.worst().samples), (vec![[0.0; 4]; 16], 0.0));

@@ -8,7 +8,9 @@
 use super::encoding::Writer;
 use super::table::Made;
 use glam::Vec4;
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator};
+use rayon::iter::{
+    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefMutIterator, ParallelIterator,
+};
 use rayon::slice::ParallelSliceMut;
 use texgraph_compiler::manifest::{Format, Table};
 
@@ -101,10 +103,7 @@ impl Pair {
         let half = 1 << (level - 1);
         let begins = group * 2 * half;
         let second = depth.saturating_sub(begins + half).min(half);
-        Pair {
-            first: group * 2,
-            second: (second > 0).then(|| second as f32 / (half + second) as f32),
-        }
+        Pair { first: group * 2, second: (second > 0).then(|| second as f32 / (half + second) as f32) }
     }
 
     fn mean(&self, part: impl Fn(u32) -> Vec4) -> Vec4 {

@@ -79,7 +79,9 @@ pub fn manifest() -> Manifest {
 pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource {
     let (field, view, sample) = match &recipe {
         Recipe::Image { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
-        Recipe::Patterns { .. } | Recipe::Volumes { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
+        Recipe::Patterns { .. } | Recipe::Volumes { .. } => {
+            ("layers", ViewDimension::D2Array, SampleKind::Float)
+        }
         Recipe::Permutation { .. } | Recipe::Probability { .. } => {
             ("table", ViewDimension::D2, SampleKind::Int)
         }
