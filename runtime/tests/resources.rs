@@ -351,3 +351,32 @@ fn a_probability_holds_its_list_and_how_often_each_number_stands_in_it() {
         assert_eq!(codes(folder.path(), refused), ["E0551"]);
     }
 }
+
+#[test]
+fn a_level_of_a_slice_is_the_mean_of_its_group() {
+    let folder = folder();
+    // Two patterns of three slices of 4×2 texels; all texels of slice i are 20·i.
+    let samples: Vec<u8> = (0..6).flat_map(|slice| [slice * 20; 4 * 2 * 3]).collect();
+    write_picture(&folder.path().join("a.png"), [4, 12], &samples);
+    let volumes = |depth| Recipe::Volumes {
+        paths: vec!["a.png".into()],
+        grid: [1, 6],
+        depth,
+        encoding: Encoding::Linear,
+    };
+    let (table, bytes) = made(folder.path(), volumes(3));
+    assert_eq!((table.layers, table.levels.len()), (6, 3));
+    let mut rest = bytes.as_slice();
+    // The third slice has no second in its group; the last level is the mean of all three.
+    for (texels, wanted) in
+        [(8, [0, 20, 40, 60, 80, 100]), (2, [10, 10, 40, 70, 70, 100]), (1, [20, 20, 20, 80, 80, 80])]
+    {
+        for slice in wanted {
+            let (layer, after) = rest.split_at(texels * 4);
+            assert!(layer.chunks(4).all(|texel| texel == [slice, slice, slice, 255]), "{layer:?}, {slice}");
+            rest = after;
+        }
+    }
+    assert!(rest.is_empty());
+    assert_eq!(codes(folder.path(), vec![volumes(4), volumes(0)]), ["E0551", "E0551"]);
+}
