@@ -250,7 +250,7 @@ fn what_is_shrunk_keeps_its_mean_from_afar() {
         let (sine, cosine) = (TAU * turn).sin_cos();
         (0.2 + scale).min(1.0 / (sine.abs() + cosine.abs())).powi(2)
     });
-    for (cells, tolerance) in [(0.2481, 4.0), (0.7323, 4.0), (1.3717, 4.0), (64.0, 1.0)] {
+    for (cells, tolerance) in [(0.2481, 2.5), (0.7323, 1.5), (1.3717, 1.5), (64.0, 1.0)] {
         let mean = mean_alpha(transform, cells);
         let drift = (mean - 0.75 * covered) * 255.0;
         println!("{cells} cells a pixel: {drift:.2}/255");

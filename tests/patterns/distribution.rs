@@ -348,3 +348,26 @@ fn the_share_of_a_pixel_is_that_of_its_texels() {
     assert!(mean < 0.12 && off < 0.55 * sharp_off, "{mean}, {}", sharp_off / pixels.len() as f32);
     assert_eq!(soft.worst().fetches, 8.0);
 }
+
+/// The corners of a transition tile are the areas of the four cells, each as it is alone.
+#[test]
+fn corners_are_the_areas_of_four_cells() {
+    for sigma in ["", ", sigma: sigma, period: 256", ", softness: 0.3, stream: 5"] {
+        let shown = |corners: &str| {
+            let text = format!(
+                "let areas = indices([[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]])\n\
+                 let sigma = permutation(256, seed: 2)\n\
+                 texture t(uv: vec2) -> (shown: vec4) {{\n\
+                     let c = ifloor(uv * 96.0) - 40\n\
+                     shown = vec4({corners})\n\
+                 }}"
+            );
+            Drawing::of(&text).cells(96)
+        };
+        let alone = [[0, 0], [1, 0], [0, 1], [1, 1]]
+            .map(|[x, y]| format!("areas.dithered_area(c + ivec2({x}, {y}), 70{sigma})"));
+        let corners = shown(&format!("areas.dithered_corners(c, 70{sigma})"));
+        assert_eq!(corners, shown(&alone.join(", ")), "{sigma}");
+        assert!(corners.iter().any(|corners| corners[0] != corners[3]), "areas differ");
+    }
+}

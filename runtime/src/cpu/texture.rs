@@ -91,19 +91,33 @@ impl Texture {
         to: &mut [Lanes; 4],
     ) {
         let level = &self.levels[0];
-        let (last, lowest) = (level.size - 1, level.layers - 1);
-        let place: [usize; LANES] = std::array::from_fn(|i| {
-            let (x, y) = ((x[i] as i32).clamp(0, last.x), (y[i] as i32).clamp(0, last.y));
-            level.index((layer[i] as i32).clamp(0, lowest)) + (y * level.size.x + x) as usize
+        let (last, layers) = (level.size - 1, level.layers - 1);
+        let place: [i32; LANES] = std::array::from_fn(|i| {
+            (y[i] as i32).clamp(0, last.y) * level.size.x + (x[i] as i32).clamp(0, last.x)
         });
+        let mut start = [level.start; LANES];
+        if layers > 0 {
+            start = std::array::from_fn(|i| level.index((layer[i] as i32).clamp(0, layers)));
+        }
         for (c, to) in to.iter_mut().enumerate().filter(|(c, _)| wanted[*c]) {
-            for i in lanes_of(mask) {
-                to[i] = match &self.texels {
-                    Texels::Float(texels) => texels.get(place[i]).map_or(0, |texel| texel[c].to_bits()),
-                    Texels::Int(texels) => texels.get(place[i]).map_or(0, |texel| texel[c] as u32),
-                };
+            let places = lanes_of(mask).map(|i| (i, start[i] + place[i] as usize));
+            match &self.texels {
+                Texels::Float(texels) => component(texels, places, to, |texel| texel.as_ref()[c].to_bits()),
+                Texels::Int(texels) => component(texels, places, to, |texel| texel.as_ref()[c] as u32),
             }
         }
+    }
+}
+
+/// A component of the texels at places, each for its lane.
+fn component<T>(
+    texels: &[T],
+    places: impl Iterator<Item = (usize, usize)>,
+    to: &mut Lanes,
+    bits: impl Fn(&T) -> u32,
+) {
+    for (i, place) in places {
+        to[i] = texels.get(place).map_or(0, &bits);
     }
 }
 
