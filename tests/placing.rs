@@ -102,7 +102,8 @@ fn patterns_are_turned_and_mirrored_at_random() {
 
 /// The slopes of hills that are drawn somehow are what their normal map shows when it is drawn so.
 fn slopes_are_drawn(draw: &str, scale: f32) {
-    const PIXELS: u32 = 128;
+    const CELLS: u32 = 6;
+    const PIXELS: u32 = 96;
     let text = format!(
         "let hills = patterns(\"height.png\", encoding: linear)\n\
          let slopes = patterns(\"normal.png\", encoding: normal)\n\
@@ -114,9 +115,9 @@ fn slopes_are_drawn(draw: &str, scale: f32) {
          let slope = slopes.{draw}\n\
          both = vec4(height.r, slope.xy, height.a)\n}}"
     );
-    let picture = drawn(folder().path(), &text, 8, PIXELS);
+    let picture = drawn(folder().path(), &text, CELLS, PIXELS);
     let (mut compared, mut steepest) = (0, 0.0_f32);
-    for (x, y) in (0..8 * PIXELS).flat_map(|y| (0..8 * PIXELS).map(move |x| (x, y))) {
+    for (x, y) in (0..CELLS * PIXELS).flat_map(|y| (0..CELLS * PIXELS).map(move |x| (x, y))) {
         let is_inside = |i: u32| (3..PIXELS - 3).contains(&(i % PIXELS));
         let near = [(2, 0), (0, 2), (2, 4), (4, 2), (2, 2)];
         let all_shown = |(i, j): (u32, u32)| pixel(&picture, x + i - 2, y + j - 2)[3] > 0.999;
@@ -133,7 +134,7 @@ fn slopes_are_drawn(draw: &str, scale: f32) {
         }
         compared += 1;
     }
-    assert!(compared > 50_000 && steepest > 0.4 / scale, "{draw}: {compared}, {steepest}");
+    assert!(compared > 20_000 && steepest > 0.4 / scale, "{draw}: {compared}, {steepest}");
 }
 
 #[test]
