@@ -7,7 +7,7 @@ use super::{Checker, Frame};
 use crate::diagnostic::{Place, arguments as sentences, types as errors};
 use crate::graph;
 use crate::graph::{Axis, Builder, Constant, Level, Operation, Sampled, Scalar, Type, Value};
-use crate::intrinsic::{DOT, MAXIMUM, MINIMUM, MULTIPLY, RAW_LOG2};
+use crate::intrinsic::{DOT, MAXIMUM, MAXIMUM_INT, MINIMUM, MINIMUM_INT, MULTIPLY, RAW_LOG2, SUBTRACT_INT};
 use crate::resource::KINDS;
 use texgraph_grammar::syntax::Call;
 
@@ -66,6 +66,9 @@ impl<'a> Checker<'a> {
         let Ok(layer) = self.layer(f, ty, slots[1].take(), name, place) else { return Some(Wire::Unknown) };
         f.builder.set_place(place);
         if name == "texel" {
+            // The library's indices lie inside already.
+            let is_library = f.module < self.library.modules().len();
+            let at = if is_library { at } else { inside(&mut f.builder, view, at) };
             return Some(Wire::Value(f.builder.texel(view, at, layer)));
         }
         let Some(level) = self.level(f, ty, &slots) else { return Some(Wire::Unknown) };
@@ -148,6 +151,18 @@ impl<'a> Checker<'a> {
         let y = f.builder.push(Operation::Derivative(value, Axis::Y, Sampled::Constant), ty);
         Some(Level::Gradient(x, y))
     }
+}
+
+/// The texel of level 0 that is nearest to an index: what lies outside is undefined in a shader.
+fn inside(builder: &mut Builder, view: Value, index: Value) -> Value {
+    let (size, width) = (builder.size(view), builder.ty(index).width());
+    let [zero, one] = [0, 1].map(|int| {
+        let int = builder.constant(Constant::ints(&[int]));
+        builder.splat(int, width)
+    });
+    let last = builder.builtin(SUBTRACT_INT, &[size, one]);
+    let below = builder.builtin(MINIMUM_INT, &[index, last]);
+    builder.builtin(MAXIMUM_INT, &[below, zero])
 }
 
 /// 2⁻¹²⁰: levels are at least -60.

@@ -251,9 +251,9 @@ mod tests {
     fn cost(is_first: &[bool], link: &dyn Fn(usize, usize) -> u32, pull: &dyn Fn(usize) -> Pull) -> u64 {
         let parted = |a: usize, b: usize| if is_first[a] == is_first[b] { 0 } else { u64::from(link(a, b)) };
         let mut sum = 0;
-        for node in 0..SIZE[0] * SIZE[1] {
+        for (node, is_first_here) in is_first.iter().enumerate() {
             let Pull { to_first, to_second } = pull(node);
-            sum += u64::from(if is_first[node] { to_second } else { to_first });
+            sum += u64::from(if *is_first_here { to_second } else { to_first });
             if node % SIZE[0] + 1 < SIZE[0] {
                 sum += parted(node, node + 1);
             }
