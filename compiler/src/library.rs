@@ -27,6 +27,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/positions.tex", include_str!("../std/positions.tex")),
     ("std/noise.tex", include_str!("../std/noise.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),
+    ("std/filtering.tex", include_str!("../std/filtering.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),
     ("std/matrix.tex", include_str!("../std/matrix.tex")),
 ];

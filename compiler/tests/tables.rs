@@ -141,6 +141,9 @@ fn derivatives_are_slopes() {
     let points = [0.3_f32, 0.55, 0.7, 0.42, 0.61, 0.85, 0.35, 0.78, 0.5, 0.66, 0.25, 0.9];
     for (intrinsic, signature) in rows() {
         let Derivative::Rule(rule) = intrinsic.row().derivative else { continue };
+        if intrinsic.row().name == "narrow" {
+            continue; // What it is there for is another change than that of its value.
+        }
         let all_floats = signature.inputs.iter().all(|input| shape(&input.ty, 2).0 == Scalar::Float);
         if !all_floats {
             continue;

@@ -108,6 +108,11 @@ pub fn same(d: &mut Tangents) -> Value {
     d.t(0)
 }
 
+/// Of what is seen by a part of a pixel: that share of its change.
+pub fn narrow(d: &mut Tangents) -> Value {
+    d.mul(d.t(0), d.x(1))
+}
+
 /// Of an absolute value: 0 at 0.
 pub fn absolute(d: &mut Tangents) -> Value {
     let sign = d.of(SIGN, &[d.x(0)]);

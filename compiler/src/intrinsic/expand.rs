@@ -200,6 +200,11 @@ pub fn clamp_int(b: &mut Builder, v: &[Value]) -> Value {
     b.builtin(MINIMUM_INT, &[raised, v[2]])
 }
 
+/// Nothing is left of it but its first argument.
+pub fn narrow(_: &mut Builder, v: &[Value]) -> Value {
+    v[0]
+}
+
 /// The cubic between the bounds, a step where there is nothing between them.
 pub fn smoothstep(b: &mut Builder, v: &[Value]) -> Value {
     if in_order(b, v[0], v[1], value::LEAST) {

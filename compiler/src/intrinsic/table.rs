@@ -283,6 +283,14 @@ pub static TABLE: &[Row] = &[
         form: Function("fract"),
     },
     Row {
+        name: "narrow",
+        signature: "<n>(v: vec<n>, share: vec<n>) -> vec<n>",
+        doc: "`v`, as a pixel sees it that is `share` as wide: its change across the screen is that much of `v`'s.",
+        value: each!((f32, f32) -> f32, |v, _| v),
+        derivative: Rule(derivative::narrow),
+        form: Expand(expand::narrow),
+    },
+    Row {
         name: "abs",
         signature: "<n>(x: ivec<n>) -> ivec<n>",
         doc: "The absolute value; that of the least int is itself.",
