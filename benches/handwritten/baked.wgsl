@@ -10,6 +10,6 @@ fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     let p = place(uv);
     let right = dpdx(p) * 0.25;
     let down = dpdy(p) * 0.25;
-    let at = fract(p) * 0.25 + hash(vec2<i32>(floor(p)), 0).xy;
+    let at = fract(p) * 0.25 + hash(vec2<i32>(floor(p)), 1918987876).xy;
     return textureSampleGrad(ripples, filtering, at, right, down);
 }

@@ -13,7 +13,7 @@ fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     let right = dpdx(p) * 0.25;
     let down = dpdy(p) * 0.25;
     let cell = vec2<i32>(floor(p));
-    let at = fract(p) * 0.25 + hash(cell, 0).xy;
+    let at = fract(p) * 0.25 + hash(cell, 1918987876).xy;
     let stone = textureSampleGrad(rock, rock_filtering, at, right, down);
     let wood = textureSampleGrad(planks, planks_filtering, at, right, down);
     let chosen = select(wood, stone, hash(cell, 1).x < 0.5);

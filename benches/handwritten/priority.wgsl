@@ -19,7 +19,7 @@ fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
     var pick = 0;
     for (var k = 0; k < 4; k += 1) {
         let cell = corner + vec2(k & 1, k >> 1);
-        let random = hash(cell, 0);
+        let random = hash(cell, 1918987876);
         let turn = rotation(random.z * 6.2831855);
         let away = turn * (p - vec2<f32>(cell) - mix(vec2(0.4), vec2(0.6), random.xy));
         let wins = length(away) < 0.55 && random.w > rank;

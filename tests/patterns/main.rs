@@ -8,6 +8,7 @@ mod far;
 mod layers;
 mod material;
 mod splat;
+mod streams;
 mod support;
 mod transition;
 mod volumes;

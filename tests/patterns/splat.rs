@@ -14,12 +14,12 @@ fn agrees(arguments: &str, turn: &str, scale: &str, round: bool) {
             let all = fold (sum = vec4(0.0)) for o in ivec2(-3)..=ivec2(3) while sum.a < 0.996 {{
                 let cell = ifloor(p) + o
                 sum = fold (above = sum) for k in 0..2 while above.a < 0.996 {{
-                    let draw = hash(cell, seed: 41 + 3 * k)
-                    let size = hash(cell, seed: 42 + 3 * k)
+                    let draw = hash(cell, seed: 1936747636 + 3 * k)
+                    let size = hash(cell, seed: 1936747637 + 3 * k)
                     let at   = rotation(-mix({turn}, size.y)) * (p - cell - draw.xy) / mix({scale}, size.x) + 0.5
                     let near = abs(at - 0.5)
                     let cover = coverage(0.5 - max(near.x, near.y))
-                    above = if cover > 0.0 && draw.w < 0.8 {{ above + stamp(at, hash(cell, seed: 43 + 3 * k)) * cover * (1.0 - above.a) }} else {{ above }}
+                    above = if cover > 0.0 && draw.w < 0.8 {{ above + stamp(at, hash(cell, seed: 1936747638 + 3 * k)) * cover * (1.0 - above.a) }} else {{ above }}
                 }}
             }}
             seen = all - splat(p, {stamp}, per_cell: 2, density: |m| 0.8, {arguments})

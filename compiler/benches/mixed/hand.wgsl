@@ -25,7 +25,7 @@ fn hash(v: vec4<i32>) -> vec4<f32> {
 
 // Hex-tiling (Mikkelsen, Practical Real-Time Hex-Tiling, JCGT 2022).
 fn hexagon(picture: texture_2d<f32>, smp: sampler, at: vec2<f32>, dx: vec2<f32>, dy: vec2<f32>, vertex: vec2<i32>) -> vec4<f32> {
-    let random = hash(vec4(vertex, 0, 0));
+    let random = hash(vec4(vertex, 0, 1752528993));
     let centre = mat2x2(0.28867513, 0.0, 0.14433757, 0.25) * vec2<f32>(vertex);
     let angle = (random.z - 0.5) * 6.2831855;
     let c = cos(angle);
