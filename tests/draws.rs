@@ -1,5 +1,6 @@
 //! Statistics of what the library draws for cells: by the hash, and by walks through a permutation
-//! table σ of size 256. All draws are those of the CPU renderer, which is what the GPU draws.
+//! table σ of which a coordinate has two digits (size 256) or one (65,536). All draws are those of the
+//! CPU renderer, which is what the GPU draws.
 
 use texgraph_compiler::{Library, Options, compile, diagnostic::render};
 use texgraph_runtime::cpu;
@@ -9,8 +10,10 @@ use texgraph_runtime::resource::load;
 
 /// Sides of a field in cells.
 const SQUARE: [usize; 2] = [4096, 4096];
-/// Of a field that holds whole periods of 65,536 cells, and all digits of the other axis.
-const LONG: [usize; 2] = [256, 65_536];
+/// Cells after which a walk may repeat.
+const PERIOD: usize = 65_536;
+/// Of a field that holds whole periods, and all digits of the other axis.
+const LONG: [usize; 2] = [256, PERIOD];
 /// Cells that are drawn at once.
 const PICTURE: usize = 1 << 20;
 /// Patterns, unless a test says otherwise.
@@ -121,14 +124,26 @@ fn the_hash_draws_all_equally_and_streams_are_independent() {
     }
 }
 
+/// A permutation table.
+#[derive(Clone, Copy)]
+struct Sigma {
+    size: u32,
+    seed: u32,
+}
+
+/// Of which each coordinate has two digits below the default period.
+const TWO_DIGITS: Sigma = Sigma { size: 256, seed: 1 };
+/// Of which it has one.
+const ONE_DIGIT: Sigma = Sigma { size: 65_536, seed: 1 };
+
 /// A field that walks through σ draw for `uv`, or for `uv.yx`.
-fn walked(size: [usize; 2], place: &str, stream: u32) -> Vec<u32> {
+fn walked(Sigma { size, seed }: Sigma, field: [usize; 2], place: &str, stream: u32) -> Vec<u32> {
     let text = format!(
-        "let sigma = permutation(256, seed: 1)\n\
+        "let sigma = permutation({size}, seed: {seed})\n\
          texture t(uv: vec2) -> (index: int) {{\n\
          index = virtual_index(ifloor({place}), {COUNT}, sigma: sigma, stream: {stream})\n}}"
     );
-    drawn(&text, [0, 0], size)
+    drawn(&text, [0, 0], field)
 }
 
 /// The pairs of cells that are so far apart.
@@ -144,20 +159,31 @@ fn apart(field: &[u32], [width, height]: [usize; 2], [right, down]: [i32; 2]) ->
 }
 
 /// Over whole periods along rows, columns and diagonals.
-#[test]
-fn walks_draw_all_equally_and_leave_no_trace_nearby() {
+fn leaves_no_trace_nearby(sigma: Sigma, size: [usize; 2]) {
+    let (mut most_r, mut most_v) = (0.0_f64, 0.0_f64);
     for (place, directions) in [("uv", [[0, 1], [1, 1]]), ("uv.yx", [[0, 1], [-1, 1]])] {
-        let field = walked(LONG, place, 0);
+        let field = walked(sigma, size, place, 0);
         let found = frequencies(field.iter().map(|number| *number as usize), COUNT);
         assert_eq!(found, [field.len() as u64 / COUNT as u64; COUNT], "not equally often");
-        for [right, down] in directions {
-            for lag in 1..=8 {
-                let found = dependence(&apart(&field, LONG, [lag * right, lag * down]));
-                let (r, v) = (found.correlation, found.cramers_v);
-                println!("{place}, {right} across, {down} down, lag {lag}: r {r:.5}, V {v:.5}");
-                assert!(r.abs() < 0.01 && v < 0.1, "lag {lag} of ({right}, {down}): r {r}, V {v}");
-            }
+        for ([right, down], lag) in directions.iter().flat_map(|d| (1..=8).map(move |lag| (d, lag))) {
+            let found = dependence(&apart(&field, size, [lag * right, lag * down]));
+            let (r, v) = (found.correlation.abs(), found.cramers_v);
+            (most_r, most_v) = (most_r.max(r), most_v.max(v));
         }
+    }
+    println!("{} numbers, seed {}: at most |r| {most_r:.5}, V {most_v:.5}", sigma.size, sigma.seed);
+    assert!(most_r < 0.01 && most_v < 0.1, "seed {}: r {most_r}, V {most_v}", sigma.seed);
+}
+
+#[test]
+fn walks_of_two_digits_draw_all_equally_and_leave_no_trace_nearby() {
+    leaves_no_trace_nearby(TWO_DIGITS, LONG);
+}
+
+#[test]
+fn walks_of_one_digit_draw_all_equally_and_leave_no_trace_nearby() {
+    for seed in 1..=5 {
+        leaves_no_trace_nearby(Sigma { seed, ..ONE_DIGIT }, [64, PERIOD]);
     }
 }
 
@@ -174,28 +200,64 @@ fn longest_border(line: &[u32]) -> usize {
     borders.last().copied().unwrap_or(0)
 }
 
-/// No shift of up to N - 64 cells lays a row, column or diagonal on itself.
+/// No shift of up to N - 64 cells lays a row, column or diagonal of a period on itself.
 #[test]
 fn no_line_of_a_walk_repeats() {
-    let (field, [side, _]) = (walked(SQUARE, "uv", 0), SQUARE);
-    let mut longest = 0;
-    for start in 0..side {
-        let row = field[start * side..][..side].to_vec();
-        let column: Vec<u32> = (0..side).map(|y| field[y * side + start]).collect();
-        // Long enough to begin and end with 64 cells.
-        let diagonal: Vec<u32> = (0..side - start).map(|i| field[i * side + start + i]).collect();
-        for line in [row, column, diagonal] {
-            longest = longest.max(if line.len() > 128 { longest_border(&line) } else { 0 });
-        }
+    const LINES: usize = 128;
+    // Each column of a field is a line of the plane.
+    let places = ["uv", "uv.yx", "vec2(uv.x + uv.y, uv.y)", "vec2(uv.x - uv.y, uv.y)"];
+    for sigma in [TWO_DIGITS, ONE_DIGIT] {
+        let fields = places.map(|place| walked(sigma, [LINES, PERIOD], place, 0));
+        let lines = fields.iter().flat_map(|field| (0..LINES).map(|x| field[x..].iter().step_by(LINES)));
+        let longest = lines.map(|line| longest_border(&line.copied().collect::<Vec<_>>())).max();
+        println!("{} numbers: the longest border has {longest:?} cells", sigma.size);
+        assert!(longest.is_some_and(|longest| longest < 64), "{} numbers: {longest:?}", sigma.size);
     }
-    println!("the longest border has {longest} cells");
-    assert!(longest < 64, "{longest}");
+}
+
+/// Any two of 20 streams, in cells from all over the plane.
+#[test]
+fn all_pairs_of_twenty_streams_are_independent() {
+    let table = |size| (format!("let sigma = permutation({size}, seed: 1)\n"), ", sigma: sigma");
+    let hashed = (String::new(), "");
+    for (name, (table, sigma)) in [("hash", hashed), ("256", table(256)), ("65,536", table(PERIOD))] {
+        let streams: Vec<Vec<usize>> =
+            (0..4).flat_map(|fives| five_streams(&table, sigma, 5 * fives)).collect();
+        let pairs = (0..streams.len()).flat_map(|two| (0..two).map(move |one| (one, two)));
+        let offs = pairs.map(|(one, two)| {
+            let pairs = streams[one].iter().zip(&streams[two]).map(|(a, b)| COUNT * a + b);
+            let found = dependence(&frequencies(pairs, COUNT * COUNT));
+            (deviate(found.chi_square, (COUNT - 1).pow(2)), one, two)
+        });
+        let offs: Vec<_> = offs.collect();
+        let (off, one, two) = offs.iter().copied().max_by(|a, b| a.0.total_cmp(&b.0)).expect("some");
+        println!("{name}: of {} pairs {one} and {two} depend most, {off:.2} deviations", offs.len());
+        assert!(offs.len() == 190 && off < RARE, "{name}: streams {one} and {two}: {off:.2}");
+    }
+}
+
+/// What five streams from one on draw in a million cells of the plane.
+fn five_streams(table: &str, sigma: &str, first: usize) -> Vec<Vec<usize>> {
+    let draw = |stream: u32| {
+        let stream_number = first + stream as usize;
+        format!("{} * virtual_index(cell, {COUNT}, stream: {stream_number}{sigma})", COUNT.pow(stream))
+    };
+    let draws: Vec<String> = (0..5).map(draw).collect();
+    let text = format!(
+        "{table}texture t(uv: vec2) -> (index: int) {{\n\
+         let cell = ifloor(hash(ifloor(uv), seed: 77).xy * {PERIOD}.0)\n\
+         index = {}\n}}",
+        draws.join(" + ")
+    );
+    let field = drawn(&text, [0, 0], [1024, 1024]);
+    let of = |stream: u32| field.iter().map(|number| *number as usize / COUNT.pow(stream) % COUNT).collect();
+    (0..5).map(of).collect()
 }
 
 /// Three streams of `virtual_index` and the first of `virtual_random`.
 #[test]
 fn streams_of_a_walk_are_independent() {
-    let mut fields: Vec<Vec<u32>> = (0..3).map(|stream| walked(SQUARE, "uv", stream)).collect();
+    let mut fields: Vec<Vec<u32>> = (0..3).map(|stream| walked(TWO_DIGITS, SQUARE, "uv", stream)).collect();
     let random = "let sigma = permutation(256, seed: 1)\n\
                   texture t(uv: vec2) -> (index: int) {\n\
                   index = int(virtual_random(ifloor(uv), sigma: sigma).x * 16.0)\n}";

@@ -349,11 +349,12 @@ pub static KINDS: &[Kind] = &[
     Kind {
         name: "permutation",
         constructor: "(size: int, seed: int = 0) -> permutation",
-        doc: "A table of four independent permutations of 0..size.",
+        doc: "A table of four independent permutations of 0..size, at most 65,536.",
         gives: None,
         fields: &[
             Field { name: "table", kind: FieldKind::Row },
             Field { name: "size", kind: FieldKind::Constant },
+            Field { name: "across", kind: FieldKind::Constant },
             Field { name: "row", kind: FieldKind::Constant },
         ],
         view: None,
@@ -614,10 +615,11 @@ fn make_ramp(a: &Arguments) -> Result<Made, Diagnostic> {
 }
 
 fn make_permutation(a: &Arguments) -> Result<Made, Diagnostic> {
-    let size = a.count("size", 2, 4096)?;
+    let size = a.count("size", 2, Recipe::MAX_PERMUTATION as i32)?;
+    let fields = [("size", size), ("across", size.min(Recipe::ROW))];
     Ok(Made {
         recipe: Recipe::Permutation { size, seed: a.int("seed") },
-        constants: vec![("size", Constant::ints(&[size as i32]))],
+        constants: fields.map(|(name, value)| (name, Constant::ints(&[value as i32]))).into(),
         sampler: None,
         lender: None,
     })

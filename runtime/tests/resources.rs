@@ -260,19 +260,21 @@ fn a_texture_larger_than_any_gpu_takes_is_refused() {
 #[test]
 fn permutations_are_permutations_and_never_change() {
     let folder = folder();
-    for size in [2, 3, 256, 4096] {
+    for size in [2, 3, 256, 4096, 5000, 65_536] {
         let (table, bytes) = made(folder.path(), Recipe::Permutation { size, seed: 1 });
-        assert_eq!((table.format, table.width, table.height), (Format::Rgba32Sint, size, 1));
+        assert_eq!(table.format, Format::Rgba32Sint);
+        assert_eq!([table.width, table.height], [size.min(4096), size.div_ceil(4096)]);
         let numbers = integers(&bytes);
         for channel in 0..4 {
-            let mut sigma: Vec<i32> = numbers.iter().skip(channel).step_by(4).copied().collect();
+            let all = numbers.iter().skip(channel).step_by(4);
+            let mut sigma: Vec<i32> = all.take(size as usize).copied().collect();
             sigma.sort_unstable();
             assert!(sigma.into_iter().eq(0..size as i32), "size {size}, channel {channel}");
         }
     }
     let (_, bytes) = made(folder.path(), Recipe::Permutation { size: 256, seed: 1 });
     assert_eq!(integers(&bytes)[..8], [130, 151, 169, 18, 196, 204, 177, 222]);
-    assert_eq!(codes(folder.path(), vec![Recipe::Permutation { size: 4097, seed: 0 }]), ["E0551"]);
+    assert_eq!(codes(folder.path(), vec![Recipe::Permutation { size: 65_537, seed: 0 }]), ["E0551"]);
 }
 
 #[test]
@@ -333,6 +335,24 @@ fn small_tables_share_a_texture_a_row_each() {
     assert!(all[20..64].iter().all(|rest| *rest == 0));
     assert_eq!(all[64..], first[..]);
     assert_eq!(codes(folder.path(), vec![Recipe::Tables { rows: vec![0] }]), ["E0551"]);
+}
+
+#[test]
+fn a_large_permutation_takes_a_row_for_every_4096_numbers() {
+    let folder = folder();
+    let recipes = vec![
+        Recipe::Permutation { size: 5000, seed: 3 },
+        Recipe::Permutation { size: 5, seed: 4 },
+        Recipe::Tables { rows: vec![0, 0, 1] },
+    ];
+    let (manifest, tables) = load_recipes(folder.path(), recipes).expect("they load");
+    let bytes = |index: usize| integers(tables.get(index, "table").expect("made"));
+    let shared = manifest.resources[2].textures[0].table.as_ref().expect("laid out");
+    assert_eq!((shared.width, shared.height), (4096, 3));
+    let (large, small, all) = (bytes(0), bytes(1), bytes(2));
+    assert_eq!(all[..4 * 8192], large[..]);
+    assert!(all[4 * 5000..4 * 8192].iter().all(|rest| *rest == 0));
+    assert_eq!(all[4 * 8192..][..4 * 5], small[..]);
 }
 
 #[test]

@@ -85,9 +85,9 @@ impl<'a> Checker<'a> {
                     }
                     FieldKind::Lent(_) => views.extend(self.lent(made.lender, field.name)),
                     FieldKind::Row => {
-                        self.rows.push(resource as u32);
-                        let row = Constant::ints(&[self.rows.len() as i32 - 1]);
-                        constants.push(("row", row));
+                        constants.push(("row", Constant::ints(&[self.rows.len() as i32])));
+                        let rows = made.recipe.rows() as usize;
+                        self.rows.extend(std::iter::repeat_n(resource as u32, rows));
                         views.push(self.shared_view());
                     }
                     FieldKind::Constant | FieldKind::Texel(..) | FieldKind::As(..) => {}

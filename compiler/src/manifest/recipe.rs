@@ -53,10 +53,10 @@ pub enum Recipe {
         /// How the numbers are read.
         encoding: Encoding,
     },
-    /// Four independent permutations of 0..size: entry i holds σ₀(i)…σ₃(i). A row of the program's
-    /// [`Recipe::Tables`].
+    /// Four independent permutations of 0..size: entry i holds σ₀(i)…σ₃(i). Rows of the program's
+    /// [`Recipe::Tables`], one after the other, of [`Recipe::ROW`] entries each.
     Permutation {
-        /// T, 2 to 4096.
+        /// T, 2 to [`Recipe::MAX_PERMUTATION`].
         size: u32,
         /// Chooses the permutations.
         seed: i32,
@@ -122,7 +122,8 @@ pub enum Recipe {
         patterns: u32,
     },
     /// Small tables that share one texture, a row each. Field `table`: texel i of row r is entry i of
-    /// the r-th of these resources; the width is that of the longest.
+    /// the r-th of these resources; the width is that of the longest. A resource of several rows
+    /// stands there as many times, one after the other.
     Tables {
         /// Indices of resources: permutations, probabilities, materials.
         rows: Vec<u32>,
@@ -144,6 +145,21 @@ pub enum Recipe {
         /// Its texels' format.
         format: Format,
     },
+}
+
+impl Recipe {
+    /// The most entries of a permutation in a row of the shared tables.
+    pub const ROW: u32 = 4096;
+    /// The largest permutation.
+    pub const MAX_PERMUTATION: u32 = 65_536;
+
+    /// How many rows of the shared tables it takes, where it is one of them.
+    pub fn rows(&self) -> u32 {
+        match self {
+            Recipe::Permutation { size, .. } => size.div_ceil(Recipe::ROW),
+            _ => 1,
+        }
+    }
 }
 
 /// A colour of a ramp.

@@ -1,5 +1,5 @@
-//! `permutation`: four independent permutations of 0..size. Field `table`: texel i holds
-//! (σ₀(i), σ₁(i), σ₂(i), σ₃(i)).
+//! `permutation`: four independent permutations of 0..size. Field `table`: texel i, row after row,
+//! holds (σ₀(i), σ₁(i), σ₂(i), σ₃(i)).
 //!
 //! Each is a Fisher–Yates shuffle of 0..size that walks from the last place down: place i is
 //! swapped with place ⌊r · (i + 1) / 2³²⌋, where r is the first word of the language's own hash,
@@ -7,10 +7,7 @@
 
 use super::table::Made;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
-use texgraph_compiler::manifest::Format;
-
-/// The largest table; its width must fit a texture of any GPU.
-const MAX_SIZE: u32 = 4096;
+use texgraph_compiler::manifest::{Format, Recipe};
 
 /// Keeps these random numbers apart from those of a program that hashes (i, channel, seed): "perm".
 const SALT: u32 = 0x7065_726d;
@@ -18,20 +15,23 @@ const SALT: u32 = 0x7065_726d;
 /// Makes the texture.
 ///
 /// # Errors
-/// The size is not 2 to 4096.
+/// The size is not 2 to 65,536.
 pub fn make(place: Place, size: u32, seed: i32) -> Result<Vec<Made>, Vec<Diagnostic>> {
-    let entries = entries(place, size, seed)?;
-    Ok(vec![Made::integers("table", Format::Rgba32Sint, [size, 1], entries.into_iter().flatten())])
+    let mut entries = entries(place, size, seed)?;
+    let [width, rows] = [size.min(Recipe::ROW), size.div_ceil(Recipe::ROW)];
+    entries.resize((width * rows) as usize, [0; 4]);
+    Ok(vec![Made::integers("table", Format::Rgba32Sint, [width, rows], entries.into_iter().flatten())])
 }
 
 /// The entries of the table: (σ₀(i), σ₁(i), σ₂(i), σ₃(i)) for each i.
 ///
 /// # Errors
-/// The size is not 2 to 4096.
+/// The size is not 2 to 65,536.
 pub fn entries(place: Place, size: u32, seed: i32) -> Result<Vec<[i32; 4]>, Vec<Diagnostic>> {
-    if !(2..=MAX_SIZE).contains(&size) {
+    if !(2..=Recipe::MAX_PERMUTATION).contains(&size) {
         let message = format!("a permutation of {size} numbers can't be made");
-        return Err(vec![resources::no_table(place, message, format!("its size is 2 to {MAX_SIZE}"))]);
+        let bounds = format!("its size is 2 to {}", Recipe::MAX_PERMUTATION);
+        return Err(vec![resources::no_table(place, message, bounds)]);
     }
     let channels: [Vec<i32>; 4] = [0, 1, 2, 3].map(|channel| shuffle(size, channel, seed));
     Ok((0..size as usize).map(|i| channels.each_ref().map(|channel| channel[i])).collect())
