@@ -264,6 +264,7 @@ impl<'a> Checker<'a> {
             }
         };
         match (slot, &input.default) {
+            (Some(given), Some(default)) if is_none(default) && is_absent(declared, &given.wire) => Wire::None,
             (Some(given), _) => self.coerce(f, &input.name.text, declared, given),
             (None, Some(default)) => {
                 if let Some(constant) = known.default {
@@ -308,8 +309,10 @@ impl<'a> Checker<'a> {
         let outer = std::mem::take(&mut f.bound);
         f.foreign += 1;
         f.defaults.push(default);
-        let wire = self.expr(f, default);
-        let wire = self.coerce(f, input, declared, &Given { name: None, wire, place, expr: Some(default) });
+        let wire = match self.expr(f, default) {
+            wire if is_absent(declared, &wire) => wire,
+            wire => self.coerce(f, input, declared, &Given { name: None, wire, place, expr: Some(default) }),
+        };
         f.defaults.pop();
         f.foreign -= 1;
         (f.module, f.dims, f.scopes) = (module, dims, scopes);
@@ -462,4 +465,15 @@ impl<'a> Checker<'a> {
         let value = if scalar == Scalar::Float { f.builder.to_float(value) } else { value };
         Some(f.builder.splat(value, width))
     }
+}
+
+/// Whether a wire says that a number, a matrix or a node was not given.
+pub(super) fn is_absent(declared: &Declared, wire: &Wire) -> bool {
+    matches!(wire, Wire::None)
+        && matches!(declared, Declared::Vector(..) | Declared::Matrix(_) | Declared::Node(_))
+}
+
+/// Whether an input with this default need not be given at all.
+fn is_none(default: &Expr) -> bool {
+    matches!(&default.kind, ExprKind::Name(name) if name == "none")
 }

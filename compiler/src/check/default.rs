@@ -1,6 +1,7 @@
 //! Defaults of inputs, checked where they are declared: a call that gives the argument never looks
 //! at them.
 
+use super::arguments::is_absent;
 use super::types::{self, Declared};
 use super::wire::Wire;
 use super::{Checker, Frame, Step, Target};
@@ -52,7 +53,9 @@ impl<'a> Checker<'a> {
         // A wrong type is reported at the head.
         if let Ok(declared) = types::resolve(&input.ty, &f.dims, self.modules[f.module].file) {
             let given = super::arguments::Given { name: None, wire, place, expr: input.default.as_ref() };
-            self.coerce(f, &input.name.text, &declared, &given);
+            if !is_absent(&declared, &given.wire) {
+                self.coerce(f, &input.name.text, &declared, &given);
+            }
         }
         let wire = self.open_wire(f, input);
         f.scopes[0].insert(&input.name.text, wire);

@@ -34,7 +34,7 @@ pub enum Wire {
     Text(Rc<str>),
     /// A list with the places of its elements.
     List(Rc<Vec<(Wire, Place)>>),
-    /// A resource that was not given.
+    /// A resource or value that was not given.
     None,
     /// Wrong, and reported already; or waiting for a node to be made.
     Unknown,
@@ -104,7 +104,7 @@ pub enum ArgumentKey {
     Node(FunctionId),
     /// A bare word.
     Word(String),
-    /// A resource that was not given.
+    /// A resource or value that was not given.
     None,
 }
 
