@@ -4,9 +4,11 @@
 mod animation;
 mod cost;
 mod distribution;
+mod fades;
 mod far;
 mod layers;
 mod material;
+mod space;
 mod splat;
 mod streams;
 mod support;

@@ -220,5 +220,5 @@ fn nodes_take_patterns_of_a_dimension() {
     assert_eq!(seen("blocks.first(uv)"), [2.0, 3.0, 0.5, 0.5]);
     assert_eq!(seen("tiles.sized(uv) - tiles.reference(0, uv)"), [0.0; 4]);
     assert_eq!(seen("blocks.sized(uv) - blocks.reference(0, vec3(uv, 0.5))"), [0.0; 4]);
-    assert!(errors(&text("blocks.tiled(ivec2(0), uv, |cell| 0)")).contains("`patterns<3>`"));
+    assert!(errors(&text("blocks.material_reference(0, uv).color")).contains("`patterns<3>`"));
 }
