@@ -4,13 +4,13 @@
 //! All are drawn in turns in every round; a texture's time over the plain one's of the same round is
 //! one number of the sample, whose median counts, and beside it the ratio of the least times. CPU
 //! time of the whole process, so a software adapter counts too.
-//! Run with `cargo bench -p texgraph-runtime --bench patterns`.
+//! Run with `cargo bench -p texgraph-runtime --bench patterns`, with `--no-default-features` for the CPU
+//! renderer alone.
 
 use cpu_time::ProcessTime;
 use std::path::Path;
 use texgraph_compiler::{Library, Options, Program, compile};
 use texgraph_runtime::cpu;
-use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
@@ -40,6 +40,13 @@ fn main() {
         let (program, tables) = &cases[i];
         cpu::render(program, tables, &request, &|_| {}).expect("the CPU renders");
     });
+    #[cfg(feature = "gpu")]
+    on_an_adapter(&cases, &request);
+}
+
+#[cfg(feature = "gpu")]
+fn on_an_adapter(cases: &[(Program, Tables)], request: &Request) {
+    use texgraph_runtime::gpu::{Gpu, Preference};
     match Gpu::new(Preference::Software) {
         Ok(gpu) => {
             let mut scenes: Vec<_> = cases
@@ -47,7 +54,7 @@ fn main() {
                 .map(|(program, tables)| gpu.prepare(program, tables, 0).expect("it is prepared"))
                 .collect();
             compare(&gpu.name(), |i| {
-                scenes[i].render(&request, &|_| {}).expect("the adapter renders");
+                scenes[i].render(request, &|_| {}).expect("the adapter renders");
             });
         }
         Err(error) => println!("no software adapter: {error}"),

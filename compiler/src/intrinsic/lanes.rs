@@ -8,9 +8,10 @@
 
 use super::value::finite;
 use crate::graph::{Constant, Scalar};
+use fearless_simd::Simd;
 
 /// How many values stand side by side.
-pub const LANES: usize = 64;
+pub const LANES: usize = 128;
 
 /// One component of [`LANES`] values: its bits, as a [`Constant`] holds them.
 pub type Lanes = [u32; LANES];
@@ -153,6 +154,20 @@ impl<T: Word, const N: usize> Outcome for [T; N] {
     }
 }
 
+/// Runs a loop compiled for the widest vectors that this machine has. They hold the same numbers:
+/// nothing is contracted or reordered.
+#[inline(always)]
+pub fn wide<R>(work: impl FnOnce() -> R) -> R {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    match fearless_simd::Level::new() {
+        fearless_simd::Level::Avx512(simd) => simd.vectorize(work),
+        fearless_simd::Level::Avx2(simd) => simd.vectorize(work),
+        _ => work(),
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    work()
+}
+
 /// A function of one word, of one value.
 #[inline(always)]
 pub fn one1<A: Word, R: Word>([a, ..]: [u32; 3], f: impl Fn(A) -> R) -> u32 {
@@ -174,17 +189,27 @@ pub fn one3<A: Word, B: Word, C: Word, R: Word>([a, b, c]: [u32; 3], f: impl Fn(
 /// A function of one word, in all lanes.
 #[inline(always)]
 pub fn all1<A: Word, R: Word>([a, ..]: [&Lanes; 3], out: &mut Lanes, f: impl Fn(A) -> R) {
-    for (out, a) in out.iter_mut().zip(a) {
-        *out = f(A::of(*a)).bits();
-    }
+    wide(
+        #[inline(always)]
+        move || {
+            for (out, a) in out.iter_mut().zip(a) {
+                *out = f(A::of(*a)).bits();
+            }
+        },
+    );
 }
 
 /// A function of two words, in all lanes.
 #[inline(always)]
 pub fn all2<A: Word, B: Word, R: Word>([a, b, _]: [&Lanes; 3], out: &mut Lanes, f: impl Fn(A, B) -> R) {
-    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
-        *out = f(A::of(*a), B::of(*b)).bits();
-    }
+    wide(
+        #[inline(always)]
+        move || {
+            for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+                *out = f(A::of(*a), B::of(*b)).bits();
+            }
+        },
+    );
 }
 
 /// A function of three words, in all lanes.
@@ -194,9 +219,14 @@ pub fn all3<A: Word, B: Word, C: Word, R: Word>(
     out: &mut Lanes,
     f: impl Fn(A, B, C) -> R,
 ) {
-    for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
-        *out = f(A::of(*a), B::of(*b), C::of(*c)).bits();
-    }
+    wide(
+        #[inline(always)]
+        move || {
+            for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
+                *out = f(A::of(*a), B::of(*b), C::of(*c)).bits();
+            }
+        },
+    );
 }
 
 /// A function of a whole argument, of one value.
@@ -221,9 +251,16 @@ pub fn whole_all1<A: Argument, R: Outcome>(
     out: &mut [Lanes; 4],
     f: impl Fn(A) -> R,
 ) {
-    for i in 0..LANES {
-        f(A::lane(&a, i)).store(out, i);
-    }
+    wide(
+        #[inline(always)]
+        move || {
+            // Of its own, so that a store can't change where arguments are.
+            let a = a;
+            for i in 0..LANES {
+                f(A::lane(&a, i)).store(out, i);
+            }
+        },
+    );
 }
 
 /// A function of two whole arguments, in all lanes.
@@ -233,9 +270,15 @@ pub fn whole_all2<A: Argument, B: Argument, R: Outcome>(
     out: &mut [Lanes; 4],
     f: impl Fn(A, B) -> R,
 ) {
-    for i in 0..LANES {
-        f(A::lane(&a, i), B::lane(&b, i)).store(out, i);
-    }
+    wide(
+        #[inline(always)]
+        move || {
+            let (a, b) = (a, b);
+            for i in 0..LANES {
+                f(A::lane(&a, i), B::lane(&b, i)).store(out, i);
+            }
+        },
+    );
 }
 
 /// What a row is worth by a function that applies to each component on its own, as in

@@ -16,7 +16,7 @@ mod table;
 mod value;
 
 pub use derivative::{Tangents, zero};
-pub use lanes::{LANES, Lanes, Vector, ZERO};
+pub use lanes::{LANES, Lanes, Vector, ZERO, wide};
 pub use table::*;
 pub use value::floor;
 

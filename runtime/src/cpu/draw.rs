@@ -13,7 +13,7 @@ use texgraph_compiler::graph::{Graph, Scalar};
 use texgraph_compiler::intrinsic::{LANES, Lanes};
 
 /// Batches that one thread takes on at least.
-const LEAST_BATCHES: usize = 32;
+const LEAST_BATCHES: usize = 16;
 
 /// The pixels of a batch.
 type Batch = [[f32; 4]; LANES];

@@ -7,10 +7,10 @@
 //! A batch is sampled level by level: which texels a level gives and how they are weighed is worked
 //! out for all lanes side by side, then the texels are gathered for the lanes that want the level.
 
-use super::mask::{Mask, gather, lanes_of};
+use super::mask::{Mask, each_lane, gather, lanes_of};
 use super::texture::{Level, Texels, Texture};
 use glam::Vec4;
-use texgraph_compiler::intrinsic::{LANES, Lanes, ZERO, floor};
+use texgraph_compiler::intrinsic::{LANES, Lanes, ZERO, floor, wide};
 use texgraph_compiler::manifest::{Filter, Wrap};
 
 /// A coordinate in all lanes, or something like it.
@@ -133,17 +133,22 @@ impl Sampler {
         let (x, y, share, [near, far]) = (&self.x, &self.y, &self.share, &mut self.taps);
         near.find(texture.wrap, sharp, x, y);
         let Some(blurred) = blurred else {
-            for i in lanes_of(mask) {
-                store(near.texel(layers.texels(sharp, i), i), i, to);
-            }
-            return;
+            return each_lane(
+                mask,
+                #[inline(always)]
+                |i| store(near.texel(layers.texels(sharp, i), i), i, to),
+            );
         };
         far.find(texture.wrap, blurred, x, y);
-        for i in lanes_of(mask) {
-            let sharp = near.texel(layers.texels(sharp, i), i);
-            let blurred = far.texel(layers.texels(blurred, i), i);
-            store(if share[i] == 0.0 { sharp } else { sharp.lerp(blurred, share[i]) }, i, to);
-        }
+        each_lane(
+            mask,
+            #[inline(always)]
+            |i| {
+                let sharp = near.texel(layers.texels(sharp, i), i);
+                let blurred = far.texel(layers.texels(blurred, i), i);
+                store(if share[i] == 0.0 { sharp } else { sharp.lerp(blurred, share[i]) }, i, to);
+            },
+        );
     }
 
     /// The nearest texel of the nearest level.
@@ -205,12 +210,17 @@ impl Axis {
     #[inline(always)]
     fn each(&mut self, size: i32, places: &Places, inside: impl Fn(i32) -> i32) {
         let slots = self.low.iter_mut().zip(&mut self.high).zip(&mut self.share);
-        for (((low, high), share), place) in slots.zip(places) {
-            let place = place * size as f32 - 0.5;
-            let first = floor(place);
-            let number = small_int(first);
-            (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
-        }
+        wide(
+            #[inline(always)]
+            || {
+                for (((low, high), share), place) in slots.zip(places) {
+                    let place = place * size as f32 - 0.5;
+                    let first = floor(place);
+                    let number = small_int(first);
+                    (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
+                }
+            },
+        );
     }
 }
 
@@ -225,10 +235,15 @@ fn reduce(wrap: Wrap, lanes: &Lanes, to: &mut Places) {
 
 #[inline(always)]
 fn reduce_by(lanes: &Lanes, to: &mut Places, reduce: impl Fn(f32) -> f32) {
-    for (to, bits) in to.iter_mut().zip(lanes) {
-        let reduced = reduce(f32::from_bits(*bits));
-        *to = if reduced.is_finite() { reduced } else { 0.0 };
-    }
+    wide(
+        #[inline(always)]
+        || {
+            for (to, bits) in to.iter_mut().zip(lanes) {
+                let reduced = reduce(f32::from_bits(*bits));
+                *to = if reduced.is_finite() { reduced } else { 0.0 };
+            }
+        },
+    );
 }
 
 /// A texel becomes what a lane has.

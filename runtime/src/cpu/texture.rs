@@ -1,6 +1,6 @@
 //! Textures of the CPU renderer: tables with their texels decoded.
 
-use super::mask::{Mask, lanes_of};
+use super::mask::{Mask, each_lane};
 use crate::bake::Bake;
 use crate::pass::Pass;
 use crate::render::RenderError;
@@ -11,7 +11,7 @@ use half::f16;
 use rayon::iter::ParallelIterator;
 use rayon::slice::ParallelSlice;
 use texgraph_compiler::graph::ResourceView;
-use texgraph_compiler::intrinsic::{LANES, Lanes};
+use texgraph_compiler::intrinsic::{LANES, Lanes, wide};
 use texgraph_compiler::manifest::{self, Filter, Format, Table, Wrap};
 
 /// A texture with its sampler.
@@ -92,33 +92,40 @@ impl Texture {
     ) {
         let level = &self.levels[0];
         let (last, layers) = (level.size - 1, level.layers - 1);
-        let place: [i32; LANES] = std::array::from_fn(|i| {
-            (y[i] as i32).clamp(0, last.y) * level.size.x + (x[i] as i32).clamp(0, last.x)
-        });
-        let mut start = [level.start; LANES];
+        let mut places = [0; LANES];
+        wide(
+            #[inline(always)]
+            || {
+                for ((place, x), y) in places.iter_mut().zip(x).zip(y) {
+                    let row = (*y as i32).clamp(0, last.y) * level.size.x;
+                    *place = level.start as u32 + (row + (*x as i32).clamp(0, last.x)) as u32;
+                }
+            },
+        );
         if layers > 0 {
-            start = std::array::from_fn(|i| level.index((layer[i] as i32).clamp(0, layers)));
+            for (place, layer) in places.iter_mut().zip(layer) {
+                *place += (level.index((*layer as i32).clamp(0, layers)) - level.start) as u32;
+            }
         }
         for (c, to) in to.iter_mut().enumerate().filter(|(c, _)| wanted[*c]) {
-            let places = lanes_of(mask).map(|i| (i, start[i] + place[i] as usize));
             match &self.texels {
-                Texels::Float(texels) => component(texels, places, to, |texel| texel.as_ref()[c].to_bits()),
-                Texels::Int(texels) => component(texels, places, to, |texel| texel.as_ref()[c] as u32),
+                Texels::Float(texels) => {
+                    component(texels, &places, mask, to, |texel| texel.as_ref()[c].to_bits())
+                }
+                Texels::Int(texels) => component(texels, &places, mask, to, |texel| texel.as_ref()[c] as u32),
             }
         }
     }
 }
 
 /// A component of the texels at places, each for its lane.
-fn component<T>(
-    texels: &[T],
-    places: impl Iterator<Item = (usize, usize)>,
-    to: &mut Lanes,
-    bits: impl Fn(&T) -> u32,
-) {
-    for (i, place) in places {
-        to[i] = texels.get(place).map_or(0, &bits);
-    }
+#[inline(always)]
+fn component<T>(texels: &[T], places: &Lanes, mask: Mask, to: &mut Lanes, bits: impl Fn(&T) -> u32) {
+    each_lane(
+        mask,
+        #[inline(always)]
+        |i| to[i] = texels.get(places[i] as usize).map_or(0, &bits),
+    );
 }
 
 impl Level {
