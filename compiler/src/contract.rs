@@ -126,6 +126,7 @@ pub fn manifest(graphs: &[PassGraph], label: &str, options: &Options) -> Manifes
         gradients,
         outputs: outputs(entry),
         discard_below: options.discard_below.filter(|_| options.form == Form::Complete),
+        tiles: None,
         params,
         uniform,
         passes,

@@ -29,6 +29,7 @@ pub mod pass;
 pub mod plane;
 pub mod profile;
 pub mod resource;
+mod tiling;
 
 pub use diagnostic::Diagnostic;
 pub use library::Library;
@@ -233,14 +234,16 @@ struct Planned {
 /// All of compiling but the shaders.
 fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Planned, Vec<Diagnostic>> {
     let checked = checked(library, modules, options);
-    let Graphs { graphs, label, head } = checked.map_err(|found| advice::advise(modules, found))?;
+    let Graphs { graphs, label, period, head } = checked.map_err(|found| advice::advise(modules, found))?;
     let finished = &library.ahead().finished;
     let optimised = graphs.into_iter().map(|PassGraph { graph, bake }| {
         let gradients = if bake.is_some() { Gradients::Derive } else { options.gradients };
         PassGraph { graph: pass::run(graph, finished, gradients), bake }
     });
     let graphs: Vec<PassGraph> = optimised.collect();
-    let manifest = contract::manifest(&graphs, &label, options);
+    // In perspective nothing repeats.
+    let tiles = period.filter(|_| options.plane.is_none());
+    let manifest = Manifest { tiles, ..contract::manifest(&graphs, &label, options) };
     let passed = graphs.last().map(|last| profile::check(options.profile, &manifest, &last.graph, head));
     match passed.unwrap_or_default() {
         passed if passed.is_empty() => Ok(Planned { graphs, manifest }),
@@ -254,6 +257,8 @@ struct Graphs {
     graphs: Vec<PassGraph>,
     /// Its documentation.
     label: String,
+    /// The period that it was proved to have.
+    period: Option<[f32; 2]>,
     /// Its name in its file.
     head: Place,
 }
@@ -270,7 +275,7 @@ fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Gr
         return Err(if silent { vec![bug] } else { diagnostics });
     };
     let label = checker.doc(&key);
-    let head = checker.head_of(&key);
+    let (period, head) = (checker.period(&key), checker.head_of(&key));
     let Some(mut graphs) = checker.into_graphs(&key) else {
         return Err(vec![limits::bug(main_place(modules), "a checked texture has no graph")]);
     };
@@ -278,7 +283,7 @@ fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Gr
         choose_outputs(&mut last.graph, options, head).map_err(|diagnostic| vec![diagnostic])?;
         options.plane.iter().for_each(|plane| plane::seen(&mut last.graph, *plane));
     }
-    Ok(Graphs { graphs, label, head })
+    Ok(Graphs { graphs, label, period, head })
 }
 
 /// Leaves only the outputs that are wanted.

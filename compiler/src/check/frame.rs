@@ -27,6 +27,8 @@ pub enum Target<'a> {
     Default(&'a Input),
     /// A node that is rendered on its own, by its item.
     Render(usize),
+    /// The period of a texture, by its item.
+    Tiles(usize),
 }
 
 /// A function in the making.
@@ -159,6 +161,7 @@ impl<'a> Target<'a> {
             Target::Let(Pattern::Record(names, _)) => names.first().map_or("", |name| &name.text),
             Target::Default(input) => &input.name.text,
             Target::Render(_) => "value",
+            Target::Tiles(_) => "tiles",
             Target::Param(item) => match &item.kind {
                 ItemKind::Param { name, .. } => &name.text,
                 _ => "",

@@ -31,6 +31,7 @@ mod special;
 mod step;
 mod still;
 mod texture;
+mod tiles;
 mod types;
 mod view;
 mod wire;
@@ -86,6 +87,8 @@ pub struct Checker<'a> {
     views: Vec<ResourceView>,
     /// The resources that are rows of the shared table.
     rows: Vec<u32>,
+    /// The periods that textures of the main file ask for, by their items.
+    periods: FxHashMap<usize, [f32; 2]>,
     diagnostics: Vec<Diagnostic>,
     warnings: Vec<Diagnostic>,
     /// Where functions that were made ahead stand, by their place in the library's list.
@@ -130,6 +133,7 @@ impl<'a> Checker<'a> {
             resource_wires: Vec::new(),
             views: Vec::new(),
             rows: Vec::new(),
+            periods: FxHashMap::default(),
             diagnostics: Vec::new(),
             warnings: Vec::new(),
             taken: FxHashMap::default(),

@@ -62,6 +62,7 @@ impl<'a> Checker<'a> {
             Target::Global(name, doc) => self.set_global(f, name, doc, wire, place),
             Target::Param(item) => self.set_param(f, item, wire, place),
             Target::Default(input) => self.check_default(f, input, wire, place),
+            Target::Tiles(item) => self.set_period(f, item, &wire, place),
             Target::Render(_) => {
                 let name = f.key.as_ref().and_then(|key| key.wire.clone());
                 self.output_parts(f, name.as_deref().unwrap_or("value"), wire, place);

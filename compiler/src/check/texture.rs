@@ -110,8 +110,11 @@ impl<'a> Checker<'a> {
     fn entry(&mut self, module: usize, item: usize, wire: Option<String>) -> Option<Key> {
         let node = self.node(module, item)?;
         self.budget = limits::MAX_EVALUATION;
-        let fine = self.check_signature(module, item, node);
+        let fine = self.check_signature(module, node);
         let key = self.alone(module, item, node, fine)?;
+        if let (true, None, Some(Outcome::Made(function))) = (fine, &wire, self.made.get(&key).copied()) {
+            self.check_tiles(module, item, function);
+        }
         let key = match wire {
             Some(_) if !fine || !self.is_fine() => return None,
             Some(_) => {
@@ -223,13 +226,9 @@ impl<'a> Checker<'a> {
         self.intern(builder.finish())
     }
 
-    fn check_signature(&mut self, module: usize, item: usize, node: &Node) -> bool {
+    fn check_signature(&mut self, module: usize, node: &Node) -> bool {
         let file = self.modules[module].file;
         let before = self.diagnostics.len();
-        if let ItemKind::Texture { tiles: Some(tiles), .. } = &self.modules[module].tree.items[item].kind {
-            let place = Place { file, span: tiles.span };
-            self.diagnostics.push(unsupported::not_yet(place, "`tiles`"));
-        }
         for input in &node.inputs {
             let place = Place { file, span: input.name.span };
             match INPUTS.iter().find(|known| known.name == input.name.text) {

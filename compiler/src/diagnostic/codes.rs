@@ -116,6 +116,8 @@ pub const PAGES: &[(&str, &str)] = &[
     ("E0803", include_str!("pages/E0803.md")),
     ("E0804", include_str!("pages/E0804.md")),
     ("E0805", include_str!("pages/E0805.md")),
+    ("E0806", include_str!("pages/E0806.md")),
+    ("E0807", include_str!("pages/E0807.md")),
     ("E0901", include_str!("pages/E0901.md")),
     ("E0999", include_str!("pages/E0999.md")),
     ("W0801", include_str!("pages/W0801.md")),

@@ -21,6 +21,7 @@ pub mod rates;
 pub mod render;
 pub mod resources;
 pub mod syntax;
+pub mod tiling;
 pub mod types;
 pub mod unsupported;
 

@@ -2,7 +2,7 @@
 //!
 //! One row of `table` says all about one intrinsic: its name and signature (in the language's own
 //! notation), its documentation, its value (which defines it, on every machine, bit for bit), its
-//! derivative and its form in the shader. Nothing else lists intrinsics, so a new one is a new row.
+//! derivative, how it repeats and its form in the shader. Nothing else lists intrinsics, so a new one is a new row.
 //!
 //! Two kinds of rows have no name and can't be called: the *raw* operations that a shader really
 //! has, undefined for some arguments, and the conversions that checking inserts. A total operation
@@ -13,11 +13,13 @@ mod derivative;
 mod expand;
 mod lanes;
 mod table;
+mod tiling;
 mod value;
 
 pub use derivative::{Tangents, zero};
 pub use lanes::{LANES, Lanes, Vector, ZERO, wide};
 pub use table::*;
+pub use tiling::{Arguments, Tiling};
 pub use value::floor;
 
 use crate::graph::{Builder, Constant, Scalar, Value};
@@ -38,6 +40,8 @@ pub struct Row {
     pub value: Evaluate,
     /// How it changes with its arguments.
     pub derivative: Derivative,
+    /// How it repeats where its arguments do, or move.
+    pub tiling: Tiling,
     /// How the shader computes it.
     pub form: Form,
 }

@@ -5,8 +5,9 @@
 
 use super::Derivative::{Rule, Zero};
 use super::Form::{All, Choose, Convert, Expand, Function, Operator};
+use super::Tiling::{By, Plain};
 use super::lanes::{Bits, each, whole};
-use super::{Form, Helper, Intrinsic, Row, derivative, expand, find, value};
+use super::{Form, Helper, Intrinsic, Row, derivative, expand, find, tiling, value};
 
 /// Every row.
 pub static TABLE: &[Row] = &[
@@ -16,6 +17,7 @@ pub static TABLE: &[Row] = &[
         doc: "The negative; wraps.",
         value: each!((i32) -> i32, i32::wrapping_neg),
         derivative: Zero,
+        tiling: By(tiling::negate),
         form: Operator("-"),
     },
     Row {
@@ -24,6 +26,7 @@ pub static TABLE: &[Row] = &[
         doc: "The negative.",
         value: each!((f32) -> f32, |x| -x),
         derivative: Rule(derivative::negate),
+        tiling: By(tiling::negate),
         form: Operator("-"),
     },
     Row {
@@ -32,6 +35,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether it does not hold.",
         value: each!((bool) -> bool, |x| !x),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("!"),
     },
     Row {
@@ -40,6 +44,7 @@ pub static TABLE: &[Row] = &[
         doc: "Sum; ints wrap.",
         value: each!((i32, i32) -> i32, i32::wrapping_add),
         derivative: Zero,
+        tiling: By(tiling::add),
         form: Operator("+"),
     },
     Row {
@@ -48,6 +53,7 @@ pub static TABLE: &[Row] = &[
         doc: "Sum.",
         value: each!((f32, f32) -> f32, |a, b| a + b),
         derivative: Rule(derivative::add),
+        tiling: By(tiling::add),
         form: Operator("+"),
     },
     Row {
@@ -56,6 +62,7 @@ pub static TABLE: &[Row] = &[
         doc: "Difference; ints wrap.",
         value: each!((i32, i32) -> i32, i32::wrapping_sub),
         derivative: Zero,
+        tiling: By(tiling::subtract),
         form: Operator("-"),
     },
     Row {
@@ -64,6 +71,7 @@ pub static TABLE: &[Row] = &[
         doc: "Difference.",
         value: each!((f32, f32) -> f32, |a, b| a - b),
         derivative: Rule(derivative::subtract),
+        tiling: By(tiling::subtract),
         form: Operator("-"),
     },
     Row {
@@ -72,6 +80,7 @@ pub static TABLE: &[Row] = &[
         doc: "Product, component by component; ints wrap.",
         value: each!((i32, i32) -> i32, i32::wrapping_mul),
         derivative: Zero,
+        tiling: By(tiling::multiply),
         form: Operator("*"),
     },
     Row {
@@ -80,6 +89,7 @@ pub static TABLE: &[Row] = &[
         doc: "Product, component by component.",
         value: each!((f32, f32) -> f32, |a, b| a * b),
         derivative: Rule(derivative::multiply),
+        tiling: By(tiling::multiply),
         form: Operator("*"),
     },
     Row {
@@ -88,6 +98,7 @@ pub static TABLE: &[Row] = &[
         doc: "Quotient rounded down; `x / 0` is 0, `MIN / -1` is `MIN`.",
         value: each!((i32, i32) -> i32, value::divide_int),
         derivative: Zero,
+        tiling: By(tiling::divide_int),
         form: Expand(expand::divide_int),
     },
     Row {
@@ -96,6 +107,7 @@ pub static TABLE: &[Row] = &[
         doc: "Quotient; `x / 0` is 0, and 0 is whatever is nearer to it than 1e-37.",
         value: each!((f32, f32) -> f32, value::divide),
         derivative: Rule(derivative::divide),
+        tiling: By(tiling::divide),
         form: Expand(expand::divide),
     },
     Row {
@@ -104,6 +116,7 @@ pub static TABLE: &[Row] = &[
         doc: "What is left of the quotient rounded down: it has the divisor's sign; `x % 0` is 0.",
         value: each!((i32, i32) -> i32, value::remainder_int),
         derivative: Zero,
+        tiling: By(tiling::remainder),
         form: Expand(expand::remainder_int),
     },
     Row {
@@ -112,6 +125,7 @@ pub static TABLE: &[Row] = &[
         doc: "`x - y·floor(x/y)`; `x % 0` is 0.",
         value: each!((f32, f32) -> f32, value::remainder),
         derivative: Rule(derivative::remainder),
+        tiling: By(tiling::remainder),
         form: Expand(expand::remainder),
     },
     Row {
@@ -120,6 +134,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two ints.",
         value: each!((i32, i32) -> bool, |a, b| a < b),
         derivative: Zero,
+        tiling: By(tiling::less),
         form: Operator("<"),
     },
     Row {
@@ -128,6 +143,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two floats.",
         value: each!((f32, f32) -> bool, |a, b| a < b),
         derivative: Zero,
+        tiling: By(tiling::less),
         form: Operator("<"),
     },
     Row {
@@ -136,6 +152,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two ints.",
         value: each!((i32, i32) -> bool, |a, b| a <= b),
         derivative: Zero,
+        tiling: By(tiling::less_equal),
         form: Operator("<="),
     },
     Row {
@@ -144,6 +161,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two floats.",
         value: each!((f32, f32) -> bool, |a, b| a <= b),
         derivative: Zero,
+        tiling: By(tiling::less_equal),
         form: Operator("<="),
     },
     Row {
@@ -152,6 +170,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two ints.",
         value: each!((i32, i32) -> bool, |a, b| a > b),
         derivative: Zero,
+        tiling: By(tiling::greater),
         form: Operator(">"),
     },
     Row {
@@ -160,6 +179,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two floats.",
         value: each!((f32, f32) -> bool, |a, b| a > b),
         derivative: Zero,
+        tiling: By(tiling::greater),
         form: Operator(">"),
     },
     Row {
@@ -168,6 +188,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two ints.",
         value: each!((i32, i32) -> bool, |a, b| a >= b),
         derivative: Zero,
+        tiling: By(tiling::greater_equal),
         form: Operator(">="),
     },
     Row {
@@ -176,6 +197,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares two floats.",
         value: each!((f32, f32) -> bool, |a, b| a >= b),
         derivative: Zero,
+        tiling: By(tiling::greater_equal),
         form: Operator(">="),
     },
     Row {
@@ -184,6 +206,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether all components are equal.",
         value: whole!(([i32; N], [i32; N]) -> bool, value::equal),
         derivative: Zero,
+        tiling: By(tiling::equal),
         form: Expand(expand::equal),
     },
     Row {
@@ -192,6 +215,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether all components are equal.",
         value: whole!(([f32; N], [f32; N]) -> bool, value::equal),
         derivative: Zero,
+        tiling: By(tiling::equal),
         form: Expand(expand::equal),
     },
     Row {
@@ -200,6 +224,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether all components are equal.",
         value: each!((bool, bool) -> bool, |a, b| a == b),
         derivative: Zero,
+        tiling: Plain,
         form: Expand(expand::equal),
     },
     Row {
@@ -208,6 +233,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether any component differs.",
         value: whole!(([i32; N], [i32; N]) -> bool, value::not_equal),
         derivative: Zero,
+        tiling: By(tiling::not_equal),
         form: Expand(expand::not_equal),
     },
     Row {
@@ -216,6 +242,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether any component differs.",
         value: whole!(([f32; N], [f32; N]) -> bool, value::not_equal),
         derivative: Zero,
+        tiling: By(tiling::not_equal),
         form: Expand(expand::not_equal),
     },
     Row {
@@ -224,6 +251,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether any component differs.",
         value: each!((bool, bool) -> bool, |a, b| a != b),
         derivative: Zero,
+        tiling: Plain,
         form: Expand(expand::not_equal),
     },
     Row {
@@ -232,6 +260,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether both hold.",
         value: each!((bool, bool) -> bool, |a, b| a && b),
         derivative: Zero,
+        tiling: By(tiling::and),
         form: Operator("&"),
     },
     Row {
@@ -240,6 +269,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether either holds.",
         value: each!((bool, bool) -> bool, |a, b| a || b),
         derivative: Zero,
+        tiling: By(tiling::or),
         form: Operator("|"),
     },
     Row {
@@ -248,6 +278,7 @@ pub static TABLE: &[Row] = &[
         doc: "Rounds down.",
         value: each!((f32) -> f32, value::floor),
         derivative: Zero,
+        tiling: By(tiling::floor),
         form: Function("floor"),
     },
     Row {
@@ -256,6 +287,7 @@ pub static TABLE: &[Row] = &[
         doc: "Rounds up.",
         value: each!((f32) -> f32, value::ceil),
         derivative: Zero,
+        tiling: By(tiling::floor),
         form: Function("ceil"),
     },
     Row {
@@ -264,6 +296,7 @@ pub static TABLE: &[Row] = &[
         doc: "Rounds to the nearest; halves to the even one.",
         value: each!((f32) -> f32, value::round),
         derivative: Zero,
+        tiling: By(tiling::floor),
         form: Function("round"),
     },
     Row {
@@ -272,6 +305,7 @@ pub static TABLE: &[Row] = &[
         doc: "Rounds down to an int; saturates as `int` does.",
         value: each!((f32) -> i32, value::floor_int),
         derivative: Zero,
+        tiling: By(tiling::floor),
         form: Expand(expand::floor_int),
     },
     Row {
@@ -280,6 +314,7 @@ pub static TABLE: &[Row] = &[
         doc: "`x - floor(x)`: in [0, 1], 1 only by rounding.",
         value: each!((f32) -> f32, |x| x - value::floor(x)),
         derivative: Rule(derivative::same),
+        tiling: By(tiling::fract),
         form: Function("fract"),
     },
     Row {
@@ -296,6 +331,7 @@ pub static TABLE: &[Row] = &[
         doc: "The absolute value; that of the least int is itself.",
         value: each!((i32) -> i32, i32::wrapping_abs),
         derivative: Zero,
+        tiling: Plain,
         form: Function("abs"),
     },
     Row {
@@ -304,6 +340,7 @@ pub static TABLE: &[Row] = &[
         doc: "The absolute value.",
         value: each!((f32) -> f32, f32::abs),
         derivative: Rule(derivative::absolute),
+        tiling: Plain,
         form: Function("abs"),
     },
     Row {
@@ -312,6 +349,7 @@ pub static TABLE: &[Row] = &[
         doc: "-1, 0 or 1.",
         value: each!((i32) -> i32, |x| i32::from(x > 0) - i32::from(x < 0)),
         derivative: Zero,
+        tiling: Plain,
         form: Function("sign"),
     },
     Row {
@@ -320,6 +358,7 @@ pub static TABLE: &[Row] = &[
         doc: "-1, 0 or 1.",
         value: each!((f32) -> f32, |x| f32::from(i8::from(x > 0.0) - i8::from(x < 0.0))),
         derivative: Zero,
+        tiling: Plain,
         form: Function("sign"),
     },
     Row {
@@ -328,6 +367,7 @@ pub static TABLE: &[Row] = &[
         doc: "The lesser.",
         value: each!((i32, i32) -> i32, i32::min),
         derivative: Zero,
+        tiling: By(tiling::either),
         form: Function("min"),
     },
     Row {
@@ -336,6 +376,7 @@ pub static TABLE: &[Row] = &[
         doc: "The lesser.",
         value: each!((f32, f32) -> f32, f32::min),
         derivative: Rule(derivative::minimum),
+        tiling: By(tiling::either),
         form: Function("min"),
     },
     Row {
@@ -344,6 +385,7 @@ pub static TABLE: &[Row] = &[
         doc: "The greater.",
         value: each!((i32, i32) -> i32, i32::max),
         derivative: Zero,
+        tiling: By(tiling::either),
         form: Function("max"),
     },
     Row {
@@ -352,6 +394,7 @@ pub static TABLE: &[Row] = &[
         doc: "The greater.",
         value: each!((f32, f32) -> f32, f32::max),
         derivative: Rule(derivative::maximum),
+        tiling: By(tiling::either),
         form: Function("max"),
     },
     Row {
@@ -360,6 +403,7 @@ pub static TABLE: &[Row] = &[
         doc: "`min(max(x, low), high)`.",
         value: each!((i32, i32, i32) -> i32, |x, low, high| x.max(low).min(high)),
         derivative: Zero,
+        tiling: By(tiling::clamp),
         form: Expand(expand::clamp_int),
     },
     Row {
@@ -368,6 +412,7 @@ pub static TABLE: &[Row] = &[
         doc: "`min(max(x, low), high)`.",
         value: each!((f32, f32, f32) -> f32, |x, low, high| x.max(low).min(high)),
         derivative: Rule(derivative::clamp),
+        tiling: By(tiling::clamp),
         form: Expand(expand::clamp),
     },
     Row {
@@ -376,6 +421,7 @@ pub static TABLE: &[Row] = &[
         doc: "`a·(1 - t) + b·t`.",
         value: each!((f32, f32, f32) -> f32, value::mix),
         derivative: Rule(derivative::mix),
+        tiling: By(tiling::mix),
         form: Expand(expand::mix),
     },
     Row {
@@ -384,6 +430,7 @@ pub static TABLE: &[Row] = &[
         doc: "0 where `x < edge`, else 1.",
         value: each!((f32, f32) -> f32, |edge, x| if x < edge { 0.0 } else { 1.0 }),
         derivative: Zero,
+        tiling: By(tiling::step),
         form: Expand(expand::step),
     },
     Row {
@@ -392,6 +439,7 @@ pub static TABLE: &[Row] = &[
         doc: "`t²(3 - 2t)` of `t = clamp((x - low)/(high - low), 0, 1)`, which reversed bounds turn round; a step where they are equal, or nearer than 1e-37.",
         value: each!((f32, f32, f32) -> f32, value::smoothstep),
         derivative: Rule(derivative::smoothstep),
+        tiling: By(tiling::smoothstep),
         form: Expand(expand::smoothstep),
     },
     Row {
@@ -400,6 +448,7 @@ pub static TABLE: &[Row] = &[
         doc: "Sine of an angle in radians.",
         value: each!((f32) -> f32, libm::sinf),
         derivative: Rule(derivative::sine),
+        tiling: By(tiling::wave),
         form: Function("sin"),
     },
     Row {
@@ -408,6 +457,7 @@ pub static TABLE: &[Row] = &[
         doc: "Cosine of an angle in radians.",
         value: each!((f32) -> f32, libm::cosf),
         derivative: Rule(derivative::cosine),
+        tiling: By(tiling::wave),
         form: Function("cos"),
     },
     Row {
@@ -416,6 +466,7 @@ pub static TABLE: &[Row] = &[
         doc: "Tangent of an angle in radians.",
         value: each!((f32) -> f32, |x| value::divide(libm::sinf(x), libm::cosf(x))),
         derivative: Rule(derivative::tangent),
+        tiling: By(tiling::tangent),
         form: Expand(expand::tangent),
     },
     Row {
@@ -424,6 +475,7 @@ pub static TABLE: &[Row] = &[
         doc: "e to the power of x; for what is greater than 87, of 87.",
         value: each!((f32) -> f32, |x| libm::expf(x.min(value::GREATEST_EXP))),
         derivative: Rule(derivative::exponential),
+        tiling: Plain,
         form: Expand(expand::exponential),
     },
     Row {
@@ -432,6 +484,7 @@ pub static TABLE: &[Row] = &[
         doc: "2 to the power of x; for what is greater than 126, of 126.",
         value: each!((f32) -> f32, |x| libm::exp2f(x.min(value::GREATEST_EXP2))),
         derivative: Rule(derivative::exponential2),
+        tiling: Plain,
         form: Expand(expand::exponential2),
     },
     Row {
@@ -440,6 +493,7 @@ pub static TABLE: &[Row] = &[
         doc: "Arc sine of x clamped to -1..1, in radians.",
         value: each!((f32) -> f32, |x| libm::asinf(x.clamp(-1.0, 1.0))),
         derivative: Rule(derivative::arc_sine),
+        tiling: Plain,
         form: Expand(expand::arc_sine),
     },
     Row {
@@ -448,6 +502,7 @@ pub static TABLE: &[Row] = &[
         doc: "Arc cosine of x clamped to -1..1, in radians.",
         value: each!((f32) -> f32, |x| libm::acosf(x.clamp(-1.0, 1.0))),
         derivative: Rule(derivative::arc_cosine),
+        tiling: Plain,
         form: Expand(expand::arc_cosine),
     },
     Row {
@@ -456,6 +511,7 @@ pub static TABLE: &[Row] = &[
         doc: "The angle of (x, y) in radians, -π to π; 0 where both are nearer to 0 than 1e-37. Such a y alone gives 0 or π, whatever its sign.",
         value: each!((f32, f32) -> f32, value::arc_tangent),
         derivative: Rule(derivative::arc_tangent),
+        tiling: Plain,
         form: Expand(expand::arc_tangent),
     },
     Row {
@@ -464,6 +520,7 @@ pub static TABLE: &[Row] = &[
         doc: "Square root; 0 of what is negative.",
         value: each!((f32) -> f32, |x| x.max(0.0).sqrt()),
         derivative: Rule(derivative::root),
+        tiling: Plain,
         form: Expand(expand::root),
     },
     Row {
@@ -472,6 +529,7 @@ pub static TABLE: &[Row] = &[
         doc: "Natural logarithm; 0 of what is below 1e-37.",
         value: each!((f32) -> f32, |x| value::logarithm(libm::logf, x)),
         derivative: Rule(derivative::logarithm),
+        tiling: Plain,
         form: Expand(expand::logarithm),
     },
     Row {
@@ -480,6 +538,7 @@ pub static TABLE: &[Row] = &[
         doc: "Logarithm of base 2; 0 of what is below 1e-37.",
         value: each!((f32) -> f32, |x| value::logarithm(libm::log2f, x)),
         derivative: Rule(derivative::logarithm2),
+        tiling: Plain,
         form: Expand(expand::logarithm2),
     },
     Row {
@@ -488,6 +547,7 @@ pub static TABLE: &[Row] = &[
         doc: "x to the power of y, at most 1e38; for x below 1e-37 it is 0, and 1 where y is 0.",
         value: each!((f32, f32) -> f32, value::power),
         derivative: Rule(derivative::power),
+        tiling: Plain,
         form: Expand(expand::power),
     },
     Row {
@@ -496,6 +556,7 @@ pub static TABLE: &[Row] = &[
         doc: "The sum of the products of the components.",
         value: whole!(([f32; N], [f32; N]) -> f32, value::dot),
         derivative: Rule(derivative::dot),
+        tiling: By(tiling::dot),
         form: Expand(expand::dot),
     },
     Row {
@@ -504,6 +565,7 @@ pub static TABLE: &[Row] = &[
         doc: "Euclidean length.",
         value: whole!(([f32; N]) -> f32, value::length),
         derivative: Rule(derivative::length),
+        tiling: Plain,
         form: Expand(expand::length),
     },
     Row {
@@ -512,6 +574,7 @@ pub static TABLE: &[Row] = &[
         doc: "Euclidean distance.",
         value: whole!(([f32; N], [f32; N]) -> f32, value::distance),
         derivative: Rule(derivative::distance),
+        tiling: By(tiling::distance),
         form: Expand(expand::distance),
     },
     Row {
@@ -520,6 +583,7 @@ pub static TABLE: &[Row] = &[
         doc: "The vector at right angles to both.",
         value: whole!(([f32; 3], [f32; 3]) -> [f32; 3], value::cross),
         derivative: Rule(derivative::cross),
+        tiling: Plain,
         form: Function("cross"),
     },
     Row {
@@ -528,6 +592,7 @@ pub static TABLE: &[Row] = &[
         doc: "The same direction with length 1; 0 for 0.",
         value: whole!(([f32; N]) -> [f32; N], value::normalize),
         derivative: Rule(derivative::normalize),
+        tiling: Plain,
         form: Expand(expand::normalize),
     },
     Row {
@@ -536,6 +601,7 @@ pub static TABLE: &[Row] = &[
         doc: "Four random numbers in [0, 1): pcg4d of (i padded with 0, seed), upper 24 bits.",
         value: whole!(([i32; N], i32) -> [f32; 4], value::hash),
         derivative: Zero,
+        tiling: Plain,
         form: Expand(expand::hash),
     },
     Row {
@@ -544,6 +610,7 @@ pub static TABLE: &[Row] = &[
         doc: "`count` bits of x from bit `first` on, as a number from 0 up.",
         value: each!((i32, i32, i32) -> i32, value::bits),
         derivative: Zero,
+        tiling: By(tiling::bits),
         form: Expand(expand::bits),
     },
     Row {
@@ -552,6 +619,7 @@ pub static TABLE: &[Row] = &[
         doc: "Widens.",
         value: each!((i32) -> f32, |i| i as f32),
         derivative: Zero,
+        tiling: By(tiling::to_float),
         form: Convert,
     },
     Row {
@@ -560,6 +628,7 @@ pub static TABLE: &[Row] = &[
         doc: "Truncates; saturates, upwards somewhere from 2147483520, the greatest int that is a float.",
         value: each!((f32) -> i32, value::to_int),
         derivative: Zero,
+        tiling: By(tiling::to_int),
         form: Convert,
     },
     Row {
@@ -568,6 +637,7 @@ pub static TABLE: &[Row] = &[
         doc: "A component, the index clamped.",
         value: whole!(([Bits; N], i32) -> Bits, value::component),
         derivative: Rule(derivative::component),
+        tiling: By(tiling::component),
         form: Expand(expand::component),
     },
     Row {
@@ -576,6 +646,7 @@ pub static TABLE: &[Row] = &[
         doc: "The same where the bounds are in order.",
         value: each!((f32, f32, f32) -> f32, |x, low, high| x.max(low).min(high)),
         derivative: Rule(derivative::clamp),
+        tiling: By(tiling::clamp),
         form: Function("clamp"),
     },
     Row {
@@ -584,6 +655,7 @@ pub static TABLE: &[Row] = &[
         doc: "The same where the bounds are in order and apart.",
         value: each!((f32, f32, f32) -> f32, value::smoothstep),
         derivative: Rule(derivative::smoothstep),
+        tiling: By(tiling::smoothstep),
         form: Function("smoothstep"),
     },
     Row {
@@ -592,6 +664,7 @@ pub static TABLE: &[Row] = &[
         doc: "The hash of four words.",
         value: whole!(([i32; 4]) -> [f32; 4], value::hash4),
         derivative: Zero,
+        tiling: Plain,
         form: Form::Helper(Helper::Hash),
     },
     Row {
@@ -600,6 +673,7 @@ pub static TABLE: &[Row] = &[
         doc: "Whether all components hold.",
         value: whole!(([bool; N]) -> bool, value::all),
         derivative: Zero,
+        tiling: Plain,
         form: All,
     },
     Row {
@@ -608,6 +682,7 @@ pub static TABLE: &[Row] = &[
         doc: "The second where the first holds, else the third.",
         value: each!((bool, i32, i32) -> i32, value::choose),
         derivative: Zero,
+        tiling: By(tiling::choose),
         form: Choose,
     },
     Row {
@@ -616,6 +691,7 @@ pub static TABLE: &[Row] = &[
         doc: "The second where the first holds, else the third.",
         value: each!((bool, f32, f32) -> f32, value::choose),
         derivative: Rule(derivative::choose),
+        tiling: By(tiling::choose),
         form: Choose,
     },
     Row {
@@ -624,6 +700,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares components.",
         value: each!((i32, i32) -> bool, |a, b| a < b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("<"),
     },
     Row {
@@ -632,6 +709,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares components.",
         value: each!((f32, f32) -> bool, |a, b| a < b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("<"),
     },
     Row {
@@ -640,6 +718,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares components.",
         value: each!((i32, i32) -> bool, |a, b| a == b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("=="),
     },
     Row {
@@ -648,6 +727,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares components.",
         value: each!((i32, i32) -> bool, |a, b| a != b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("!="),
     },
     Row {
@@ -656,6 +736,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares components.",
         value: each!((f32, f32) -> bool, |a, b| a == b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("=="),
     },
     Row {
@@ -664,6 +745,7 @@ pub static TABLE: &[Row] = &[
         doc: "Compares components.",
         value: each!((bool, bool) -> bool, |a, b| a == b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("=="),
     },
     Row {
@@ -672,6 +754,7 @@ pub static TABLE: &[Row] = &[
         doc: "Both of each component.",
         value: each!((bool, bool) -> bool, |a, b| a && b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("&"),
     },
     Row {
@@ -680,6 +763,7 @@ pub static TABLE: &[Row] = &[
         doc: "Bits that differ.",
         value: each!((i32, i32) -> i32, |a, b| a ^ b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("^"),
     },
     Row {
@@ -688,6 +772,7 @@ pub static TABLE: &[Row] = &[
         doc: "Bits that both have.",
         value: each!((i32, i32) -> i32, |a, b| a & b),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("&"),
     },
     Row {
@@ -696,6 +781,7 @@ pub static TABLE: &[Row] = &[
         doc: "Arithmetic shift; counts 0 to 31.",
         value: each!((i32, i32) -> i32, |a, b| a.wrapping_shr(b as u32)),
         derivative: Zero,
+        tiling: Plain,
         form: Operator(">>"),
     },
     Row {
@@ -704,6 +790,7 @@ pub static TABLE: &[Row] = &[
         doc: "Shift; counts 0 to 31.",
         value: each!((i32, i32) -> i32, |a, b| a.wrapping_shl(b as u32)),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("<<"),
     },
     Row {
@@ -712,6 +799,7 @@ pub static TABLE: &[Row] = &[
         doc: "Truncated quotient; the divisor is not 0.",
         value: each!((i32, i32) -> i32, |a, b| if b == 0 { 0 } else { a.wrapping_div(b) }),
         derivative: Zero,
+        tiling: Plain,
         form: Operator("/"),
     },
     Row {
@@ -720,6 +808,7 @@ pub static TABLE: &[Row] = &[
         doc: "Quotient; what it is for a divisor of 0 must not matter.",
         value: each!((f32, f32) -> f32, value::divide),
         derivative: Rule(derivative::divide),
+        tiling: Plain,
         form: Operator("/"),
     },
     Row {
@@ -728,6 +817,7 @@ pub static TABLE: &[Row] = &[
         doc: "For two components or more.",
         value: whole!(([f32; N], [f32; N]) -> f32, value::dot),
         derivative: Rule(derivative::dot),
+        tiling: By(tiling::dot),
         form: Function("dot"),
     },
     Row {
@@ -736,6 +826,7 @@ pub static TABLE: &[Row] = &[
         doc: "Where it is defined.",
         value: each!((f32) -> f32, f32::sqrt),
         derivative: Rule(derivative::root),
+        tiling: Plain,
         form: Function("sqrt"),
     },
     Row {
@@ -744,6 +835,7 @@ pub static TABLE: &[Row] = &[
         doc: "Where it is defined.",
         value: each!((f32) -> f32, libm::logf),
         derivative: Rule(derivative::logarithm),
+        tiling: Plain,
         form: Function("log"),
     },
     Row {
@@ -752,6 +844,7 @@ pub static TABLE: &[Row] = &[
         doc: "Where it is defined.",
         value: each!((f32) -> f32, libm::log2f),
         derivative: Rule(derivative::logarithm2),
+        tiling: Plain,
         form: Function("log2"),
     },
     Row {
@@ -760,6 +853,7 @@ pub static TABLE: &[Row] = &[
         doc: "Where it is defined.",
         value: each!((f32) -> f32, libm::asinf),
         derivative: Rule(derivative::arc_sine),
+        tiling: Plain,
         form: Function("asin"),
     },
     Row {
@@ -768,6 +862,7 @@ pub static TABLE: &[Row] = &[
         doc: "Where it is defined.",
         value: each!((f32) -> f32, libm::acosf),
         derivative: Rule(derivative::arc_cosine),
+        tiling: Plain,
         form: Function("acos"),
     },
     Row {
@@ -776,6 +871,7 @@ pub static TABLE: &[Row] = &[
         doc: "Of a positive base.",
         value: each!((f32, f32) -> f32, libm::powf),
         derivative: Rule(derivative::power),
+        tiling: Plain,
         form: Function("pow"),
     },
     Row {
@@ -784,6 +880,7 @@ pub static TABLE: &[Row] = &[
         doc: "Of anything but (0, 0).",
         value: each!((f32, f32) -> f32, libm::atan2f),
         derivative: Rule(derivative::arc_tangent),
+        tiling: Plain,
         form: Function("atan2"),
     },
     Row {
@@ -792,6 +889,7 @@ pub static TABLE: &[Row] = &[
         doc: "e to the power of an x of 87 or less.",
         value: each!((f32) -> f32, libm::expf),
         derivative: Rule(derivative::exponential),
+        tiling: Plain,
         form: Function("exp"),
     },
     Row {
@@ -800,6 +898,7 @@ pub static TABLE: &[Row] = &[
         doc: "2 to the power of an x of 126 or less.",
         value: each!((f32) -> f32, libm::exp2f),
         derivative: Rule(derivative::exponential2),
+        tiling: Plain,
         form: Function("exp2"),
     },
     Row {
@@ -808,6 +907,7 @@ pub static TABLE: &[Row] = &[
         doc: "Euclidean length of two components or more.",
         value: whole!(([f32; N]) -> f32, value::length),
         derivative: Rule(derivative::length),
+        tiling: Plain,
         form: Function("length"),
     },
 ];

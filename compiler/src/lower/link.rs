@@ -119,6 +119,7 @@ fn no_manifest() -> Manifest {
         inputs: Vec::new(),
         gradients: Vec::new(),
         discard_below: None,
+        tiles: None,
         outputs: Vec::new(),
         params: Vec::new(),
         uniform: None,

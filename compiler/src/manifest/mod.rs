@@ -47,6 +47,11 @@ pub struct Manifest {
     /// The entry point discards pixels whose `color` has less alpha than this.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub discard_below: Option<f32>,
+    /// How far `uv` moves along each axis until the picture comes again, if the texture was proved to
+    /// tile (`tiles` in its head): a host may draw one period and repeat it. 0 along an axis where it
+    /// need not come again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tiles: Option<[f32; 2]>,
     /// What a host may set at run time.
     pub params: Vec<Param>,
     /// The one uniform block; none when nothing is in it.

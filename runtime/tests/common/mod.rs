@@ -59,6 +59,7 @@ pub fn manifest() -> Manifest {
         gradients: Vec::new(),
         outputs: Vec::new(),
         discard_below: None,
+        tiles: None,
         params: Vec::new(),
         uniform: None,
         resources: Vec::new(),
