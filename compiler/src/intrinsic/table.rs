@@ -296,7 +296,7 @@ pub static TABLE: &[Row] = &[
         doc: "Rounds to the nearest; halves to the even one.",
         value: each!((f32) -> f32, value::round),
         derivative: Zero,
-        tiling: By(tiling::floor),
+        tiling: By(tiling::round),
         form: Function("round"),
     },
     Row {

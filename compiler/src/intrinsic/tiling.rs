@@ -32,6 +32,9 @@ pub struct Arguments<'a> {
 /// An int that moves farther in one period leaves the ints in a few.
 const FARTHEST_INT: f64 = 16_777_216.0;
 
+/// Longer names of quotients are not shown.
+const MOST_LETTERS: usize = 30;
+
 impl Arguments<'_> {
     /// The component of argument `i` that stands where the result's does.
     fn x(&self, i: usize) -> &Shift {
@@ -39,9 +42,17 @@ impl Arguments<'_> {
         &components[self.component.min(components.len() - 1)]
     }
 
-    /// Two components by a rule of sums.
+    /// The sum of two components, or their difference.
     fn sum(&self, is_difference: bool) -> Result<Shift, Why> {
-        self.x(0).plus(self.x(1), is_difference, self.atoms)
+        let is_far = |i: usize| {
+            let number = self.x(i).amount().and_then(|amount| amount.as_number());
+            number.is_some_and(|number| number.abs() > FARTHEST_INT)
+        };
+        let sum = self.x(0).plus(self.x(1), is_difference, self.atoms)?;
+        if self.scalar == Scalar::Int && !sum.repeats() && (is_far(0) || is_far(1)) {
+            return Err(Why::Wraps);
+        }
+        within_ints(sum, self.scalar)
     }
 
     fn show(&self, i: usize) -> String {
@@ -102,8 +113,8 @@ impl Arguments<'_> {
 
 /// Ints that leave the ints soon wrap at other places in each period.
 fn within_ints(shift: Shift, scalar: Scalar) -> Result<Shift, Why> {
-    let farthest = shift.step().as_number().map_or(0.0, f64::abs);
-    if scalar == Scalar::Int && farthest > FARTHEST_INT { Err(Why::Wraps) } else { Ok(shift) }
+    let is_far = scalar == Scalar::Int && shift.step().greatest_factor() > FARTHEST_INT;
+    if is_far { Err(Why::Wraps) } else { Ok(shift) }
 }
 
 /// Of a negation.
@@ -113,12 +124,12 @@ pub fn negate(a: &mut Arguments) -> Result<Shift, Why> {
 
 /// Of a sum.
 pub fn add(a: &mut Arguments) -> Result<Shift, Why> {
-    within_ints(a.sum(false)?, a.scalar)
+    a.sum(false)
 }
 
 /// Of a difference: what moves alike has one that repeats.
 pub fn subtract(a: &mut Arguments) -> Result<Shift, Why> {
-    within_ints(a.sum(true)?, a.scalar)
+    a.sum(true)
 }
 
 /// Of a product.
@@ -147,10 +158,12 @@ pub fn divide(a: &mut Arguments) -> Result<Shift, Why> {
 
 /// A quotient by what only drawing tells: exact where that can't be 0, else times one over it.
 fn quotient(step: &Amount, divisor: &Amount, a: &mut Arguments) -> Option<Amount> {
-    let exact = step.divided(divisor).filter(|_| is_not_zero(divisor, a.atoms));
+    let is_safe = divisor.is_whole(a.atoms) && is_not_zero(divisor, a.atoms);
+    let exact = step.divided(divisor).filter(|_| is_safe);
     exact.or_else(|| {
         let source = Source::Of(a.row, vec![divisor.clone()], 0);
-        let name = format!("1/({})", divisor.show(a.atoms));
+        let name = divisor.show(a.atoms);
+        let name = if name.len() > MOST_LETTERS { "…".to_owned() } else { format!("1/({name})") };
         let one_over = a.atoms.of(source, || (name, false, (f64::NEG_INFINITY, f64::INFINITY)));
         step.times(&one_over)
     })
@@ -200,12 +213,19 @@ pub fn remainder(a: &mut Arguments) -> Result<Shift, Why> {
 /// Of a comparison: it repeats where both sides move alike.
 fn compare(a: &mut Arguments, truth: fn((f64, f64)) -> Option<bool>) -> Result<Shift, Why> {
     a.together(2)?;
-    let difference = match (a.x(0).amount(), a.x(1).amount()) {
-        (Some(left), Some(right)) => left.plus(&right.negative()),
-        _ => None,
-    };
-    let known = difference.and_then(|difference| truth(difference.bounds(a.atoms)));
+    let known = difference(a).and_then(truth);
     Ok(known.map_or_else(|| a.repeated(), |holds| Shift::Known(Constant::bools(&[holds]))))
+}
+
+/// Between what numbers the difference of two whole ones lies, if that is known without rounding.
+fn difference(a: &Arguments) -> Option<(f64, f64)> {
+    let (left, right) = (a.x(0).amount()?, a.x(1).amount()?);
+    let is_exact = |amount: &Amount| {
+        let (low, high) = amount.bounds(a.atoms);
+        amount.is_whole(a.atoms) && low >= -FARTHEST_INT && high <= FARTHEST_INT
+    };
+    let is_known = is_exact(&left) && is_exact(&right);
+    Some(left.plus(&right.negative()).filter(|_| is_known)?.bounds(a.atoms))
 }
 
 /// Of `<`
@@ -243,11 +263,7 @@ fn equality(a: &mut Arguments, if_equal: bool) -> Result<Shift, Why> {
     for component in 0..a.arguments[0].len() {
         a.component = component;
         a.together(2)?;
-        if let (Some(left), Some(right)) = (a.x(0).amount(), a.x(1).amount()) {
-            let difference = left.plus(&right.negative()).unwrap_or_default();
-            let (low, high) = difference.bounds(a.atoms);
-            is_unequal |= low > 0.0 || high < 0.0;
-        }
+        is_unequal |= difference(a).is_some_and(|(low, high)| low > 0.0 || high < 0.0);
     }
     a.component = 0;
     let unequal = || Shift::Known(Constant::bools(&[!if_equal]));
@@ -275,23 +291,26 @@ fn decided(a: &mut Arguments, by: bool) -> Result<Shift, Why> {
     })
 }
 
-/// Of what rounds: it moves as its argument does, if that is by whole numbers.
+/// Of what rounds to one side: it moves as its argument does, if that is by whole numbers.
 pub fn floor(a: &mut Arguments) -> Result<Shift, Why> {
+    rounded(a, 1.0)
+}
+
+/// Of what rounds halves to the even number: that is the same by even numbers only.
+pub fn round(a: &mut Arguments) -> Result<Shift, Why> {
+    rounded(a, 2.0)
+}
+
+fn rounded(a: &mut Arguments, unit: f64) -> Result<Shift, Why> {
     let x = a.x(0).clone();
     if x.is_whole(a.atoms) {
         return Ok(x);
     }
-    let whole = |by: &Amount| by.multiple_of(&Amount::number(1.0), a.atoms);
-    let wrong = || Why::NotMultiple { by: x.show(a.atoms), of: "1".to_owned() };
+    a.must_be_multiple(0, &Amount::number(unit), None)?;
+    let whole = |by: &Amount| by.multiple_of(&Amount::number(1.0), a.atoms).unwrap_or_default();
     match &x {
-        Shift::Moves { by, .. } => {
-            let by = whole(by).ok_or_else(wrong)?;
-            within_ints(Shift::moving(by, true), a.scalar)
-        }
-        Shift::Varies { by, .. } => {
-            let by = whole(by).ok_or_else(wrong)?;
-            within_ints(Shift::varying(by, true), a.scalar)
-        }
+        Shift::Moves { by, .. } => within_ints(Shift::moving(whole(by), true), a.scalar),
+        Shift::Varies { by, .. } => within_ints(Shift::varying(whole(by), true), a.scalar),
         Shift::Uniform(_) => match a.repeated() {
             Shift::Uniform(amount) => Ok(Shift::Uniform(a.named_whole(amount))),
             other => Ok(other),
@@ -441,4 +460,138 @@ pub fn bits(a: &mut Arguments) -> Result<Shift, Why> {
     let above = first.clamp(0.0, 31.0) + count.clamp(0.0, 32.0);
     a.must_be_multiple(0, &Amount::number(above.min(32.0).exp2()), None)?;
     Ok(Shift::Same { whole: true })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Arguments, Tiling};
+    use crate::graph::{Constant, Scalar};
+    use crate::intrinsic::{Intrinsic, TABLE};
+    use crate::tiling::{Amount, Atoms, Shift, near_whole};
+
+    /// Numbers at random.
+    struct Dice(u64);
+
+    impl Dice {
+        fn roll(&mut self, sides: i32) -> i32 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            ((self.0 >> 33) as i32).rem_euclid(sides)
+        }
+
+        /// A component here, the same a period on, and what is said of it.
+        fn component(&mut self, scalar: Scalar) -> (f64, f64, Shift) {
+            let is_whole = scalar != Scalar::Float || self.roll(2) == 0;
+            let unit = if is_whole { 1.0 } else { 0.25 };
+            let x = f64::from(self.roll(17) - 8) * unit;
+            let step = f64::from([1, 2, 3, 4, 6, 8][self.roll(6) as usize]) * unit;
+            let by = Amount::number(step);
+            match self.roll(5) {
+                _ if scalar == Scalar::Bool => (x.abs() % 2.0, x.abs() % 2.0, Shift::Same { whole: true }),
+                0 => (x, x, Shift::Known(constant(scalar, [x]))),
+                1 => (x, x, Shift::Same { whole: is_whole }),
+                2 | 3 => (x, x + step, Shift::Moves { by, whole: is_whole }),
+                _ => (x, x + step * f64::from(self.roll(5) - 2), Shift::Varies { by, whole: is_whole }),
+            }
+        }
+    }
+
+    fn constant(scalar: Scalar, numbers: impl IntoIterator<Item = f64>) -> Constant {
+        let bits = numbers.into_iter().map(|x| match scalar {
+            Scalar::Float => (x as f32).to_bits(),
+            Scalar::Int | Scalar::Bool => x as i32 as u32,
+        });
+        Constant::new(scalar, bits)
+    }
+
+    fn number(c: &Constant, i: usize) -> f64 {
+        if c.scalar() == Scalar::Float { c.float(i).into() } else { c.int(i).into() }
+    }
+
+    /// What the inputs of a row are, dimensions being 3.
+    fn inputs(signature: &str) -> Vec<(Scalar, usize)> {
+        let inside = signature.split_once('(').and_then(|(_, rest)| rest.split_once(')')).expect("inputs").0;
+        let ty = |input: &str| {
+            let name = input.split_once(": ").expect("a type").1.split(' ').next().unwrap_or_default();
+            let (name, width) = match name.split_once('<') {
+                Some((name, _)) => (name, 3),
+                None => match name.strip_suffix(|c: char| c.is_ascii_digit()) {
+                    Some(stem) => (stem, name[stem.len()..].parse().expect("a width")),
+                    None => (name, 1),
+                },
+            };
+            let scalar = match name {
+                "int" | "ivec" => Scalar::Int,
+                "bool" | "bvec" => Scalar::Bool,
+                _ => Scalar::Float,
+            };
+            (scalar, width)
+        };
+        inside.split(", ").map(ty).collect()
+    }
+
+    /// Whether what is said of a component is so.
+    fn holds(said: &Shift, here: f64, there: f64) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= 1e-4 * a.abs().max(1.0);
+        let whole = said.is_whole(&Atoms::default());
+        let is_whole = !whole || (here.fract() == 0.0 && there.fract() == 0.0);
+        is_whole
+            && match said {
+                Shift::Known(c) => near(here, number(c, 0)) && near(there, number(c, 0)),
+                Shift::Uniform(amount) => {
+                    amount.as_number().is_none_or(|x| near(here, x)) && near(here, there)
+                }
+                Shift::Same { .. } => near(here, there),
+                Shift::Moves { by, .. } => near(there - here, by.as_number().expect("a number")),
+                Shift::Varies { by, .. } => {
+                    let steps = (there - here) / by.as_number().expect("a number");
+                    near_whole(steps).is_some() || near(steps, steps.round())
+                }
+                Shift::Broken(_) => true,
+            }
+    }
+
+    #[test]
+    fn every_rule_says_what_its_row_does() {
+        let mut dice = Dice(0x9E37_79B9_7F4A_7C15);
+        for intrinsic in Intrinsic::all() {
+            let row = intrinsic.row();
+            let inputs = inputs(row.signature);
+            let mut said = 0;
+            for _ in 0..3000 {
+                let (mut here, mut there, mut shifts) = (Vec::new(), Vec::new(), Vec::new());
+                for (scalar, width) in &inputs {
+                    let components: Vec<(f64, f64, Shift)> =
+                        (0..*width).map(|_| dice.component(*scalar)).collect();
+                    here.push(constant(*scalar, components.iter().map(|(x, ..)| *x)));
+                    there.push(constant(*scalar, components.iter().map(|(_, x, _)| *x)));
+                    shifts.push(components.into_iter().map(|(.., shift)| shift).collect::<Vec<_>>());
+                }
+                let (here, there) = (intrinsic.evaluate(&here), intrinsic.evaluate(&there));
+                let arguments: Vec<&[Shift]> = shifts.iter().map(Vec::as_slice).collect();
+                let atoms = &mut Atoms::default();
+                for component in 0..usize::from(here.width()) {
+                    let scalar = here.scalar();
+                    let row_index = intrinsic.index();
+                    let mut of =
+                        Arguments { arguments: &arguments, component, row: row_index, scalar, atoms };
+                    let result = match row.tiling {
+                        Tiling::Plain => of.all_repeat().map(|()| of.repeated()),
+                        Tiling::By(rule) => rule(&mut of),
+                    };
+                    let Ok(shift) = result else { continue };
+                    said += 1;
+                    let numbers = (number(&here, component), number(&there, component));
+                    assert!(
+                        holds(&shift, numbers.0, numbers.1),
+                        "{} of {shifts:?}: {shift:?}, and {numbers:?}",
+                        row.name
+                    );
+                }
+            }
+            assert!(said > 0, "{} says nothing", row.name);
+        }
+        assert!(TABLE.iter().any(|row| matches!(row.tiling, Tiling::By(_))));
+    }
 }

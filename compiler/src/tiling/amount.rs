@@ -77,6 +77,11 @@ impl Amount {
         }
     }
 
+    /// The greatest of the numbers before its products.
+    pub fn greatest_factor(&self) -> f64 {
+        self.0.iter().map(|term| term.factor().abs()).fold(0.0, f64::max)
+    }
+
     /// The sum; none if it has too many terms.
     pub fn plus(&self, other: &Amount) -> Option<Amount> {
         let mut sum = self.0.clone();
@@ -203,7 +208,7 @@ impl Amount {
 
 /// A number with as many digits as a reader wants.
 pub fn show_number(x: f64) -> String {
-    let digits = 6 - (x.abs().max(1e-6).log10().floor() as i32).clamp(-5, 6);
+    let digits = 5 - (x.abs().max(1e-6).log10().floor() as i32).clamp(-6, 5);
     let text = format!("{x:.*}", digits.max(0) as usize);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

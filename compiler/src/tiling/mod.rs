@@ -17,7 +17,9 @@ mod atoms;
 mod shift;
 mod walk;
 
-pub use amount::Amount;
+#[cfg(test)]
+pub use amount::near_whole;
+pub use amount::{Amount, show_number};
 pub use atoms::{Atoms, Source};
 pub use shift::Shift;
 pub use walk::Walk;

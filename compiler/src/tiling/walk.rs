@@ -1,7 +1,7 @@
 //! The walk: functions with what their arguments shift by, an explicit stack of those that are under
 //! way, and a memory of those that are done.
 
-use super::{Amount, Atoms, Culprit, Shift, Source, What, Why};
+use super::{Amount, Atoms, Culprit, Shift, Source, What, Why, show_number};
 use crate::graph::{
     Constant, Fold, Function, FunctionId, Level, Operation, Param, ParamId, Place, ResourceView, Scalar,
     Type, Value, ViewId,
@@ -19,7 +19,7 @@ const MOST_STEPS: u32 = 128;
 /// Rounds until nothing changes in a loop that is not walked step by step.
 const MOST_ROUNDS: u32 = 16;
 /// Values looked at, one axis; beyond nothing is proved.
-const MOST_VALUES: u64 = 4_000_000;
+const MOST_VALUES: u64 = 1_000_000;
 
 /// What a value is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -45,6 +45,7 @@ pub struct Walk<'a> {
     library: u32,
     atoms: Atoms,
     culprits: Vec<Culprit>,
+    culprit_numbers: FxHashMap<Culprit, u32>,
     done: FxHashMap<Request, Rc<[Known]>>,
     /// Values that may still be looked at.
     budget: u64,
@@ -81,6 +82,7 @@ impl<'a> Walk<'a> {
             library,
             atoms: Atoms::default(),
             culprits: Vec::new(),
+            culprit_numbers: FxHashMap::default(),
             done: FxHashMap::default(),
             budget: MOST_VALUES,
         }
@@ -239,11 +241,13 @@ impl<'a> Walk<'a> {
 
     /// The number of a culprit.
     fn culprit(&mut self, culprit: Culprit) -> u32 {
-        let known = self.culprits.iter().position(|known| *known == culprit);
-        known.unwrap_or_else(|| {
-            self.culprits.push(culprit);
-            self.culprits.len() - 1
-        }) as u32
+        if let Some(number) = self.culprit_numbers.get(&culprit) {
+            return *number;
+        }
+        let number = self.culprits.len() as u32;
+        self.culprits.push(culprit.clone());
+        self.culprit_numbers.insert(culprit, number);
+        number
     }
 
     fn broken(&mut self, function: &Function, value: Value, name: &str, why: Why) -> Shift {
@@ -354,13 +358,14 @@ impl<'a> Walk<'a> {
         let component = if is_each { 0 } else { component };
         let Walk { atoms, .. } = self;
         let mut of = Arguments { arguments: &own, component, row: intrinsic.index(), scalar, atoms };
-        let result = match (row.tiling, row.name) {
-            (Tiling::By(rule), "&&" | "||") => rule(&mut of),
-            (tiling, _) => match (broken_among(&own), tiling) {
-                (Some(broken), _) => return broken,
-                (None, Tiling::By(rule)) => rule(&mut of),
-                (None, Tiling::Plain) => of.all_repeat().map(|()| of.repeated()),
-            },
+        // One of two truths may decide, whatever the other is.
+        let is_decided = matches!(row.name, "&&" | "||") && own.iter().any(|x| x[0].truth().is_some());
+        if let Some(broken) = broken_among(&own).filter(|_| !is_decided) {
+            return broken;
+        }
+        let result = match row.tiling {
+            Tiling::By(rule) => rule(&mut of),
+            Tiling::Plain => of.all_repeat().map(|()| of.repeated()),
         };
         let name = row.name.trim_start_matches('(').trim_end_matches(')');
         result.unwrap_or_else(|why| self.broken(function, value, name, why))
@@ -446,7 +451,7 @@ impl<'a> Walk<'a> {
                 return Err(Why::Wrap { by });
             }
             if shift.step().multiple_of(&Amount::number(times), &self.atoms).is_none() {
-                return Err(Why::NotMultiple { by, of: super::amount::show_number(times) });
+                return Err(Why::NotMultiple { by, of: show_number(times) });
             }
         }
         Ok(Shift::Same { whole: false })
@@ -485,6 +490,7 @@ impl<'a> Walk<'a> {
             return Ok(Rc::clone(results));
         }
         if self.budget > 0 {
+            self.budget -= 1;
             return Err(request);
         }
         // Found out no more.
