@@ -74,6 +74,30 @@ const TILES: &[(&str, &str, &str)] = &[
     ("1", "height = clamp(uv.x * 2.0, uv.x * 2.0 - fract(uv.y), uv.x * 2.0 + 0.25) - 2.0 * uv.x", ""),
 ];
 
+/// The library's nodes with a period: how they are called, of `p`, which is 4 by 4 cells in a period.
+const NODES: &[&str] = &[
+    "noise(p, period: ivec2(4))",
+    "value_noise(p, seed: 3, period: ivec2(4))",
+    "simplex(p, period: ivec2(4))",
+    "gabor(p, period: ivec2(4))",
+    "fbm(p, period: ivec2(4))",
+    "fbm(p, octaves: 3, lacunarity: 3.0, period: ivec2(4))",
+    "turbulence(p, period: ivec2(4))",
+    "billow(p, period: ivec2(4))",
+    "ridged(p, octaves: octaves, period: ivec2(4))",
+    "noise(warp(p, amount: 0.3, period: ivec2(4)), period: ivec2(4))",
+    "curl(p, period: ivec2(4)).x",
+    "noise(vec3(p, 0.5), period: ivec3(4, 4, 0))",
+    "voronoi(p, period: ivec2(4)).edge",
+    "voronoi(p, per_cell: 2, metric: manhattan, search: near, period: ivec2(4)).f2",
+    "voronoi(p, jitter: jitter, period: ivec2(4)).random.x",
+    "worley(p, period: ivec2(4))",
+    "clouds(p, cover: 0.4, period: ivec2(4)).density",
+    "bomb(p, |at, rnd| spot(at), period: ivec2(4)).r",
+    "bomb(p, |at, rnd| spot(at), per_cell: 2, rotation: vec2(0.0, 1turn), density: |q| 0.5 + 0.5 * noise(q, period: ivec2(4)), phase: jitter, period: ivec2(4)).r",
+    "oversampled(p, |q| vec4(noise(q, period: ivec2(4)))).r",
+];
+
 /// Wrong programs: the period, the text, the items, and what the first error names.
 const BREAKS: &[(&str, &str, &str, &str)] = &[
     ("1", "height = uv.x", "", "`height` does not tile along `u`"),
@@ -251,6 +275,37 @@ fn what_is_proved_to_tile_does() {
                     wrong.push(format!("{text}{count} pixels from {from:?} by {by:?}"));
                 }
             }
+        }
+    }
+    report(wrong);
+}
+
+const USED: &str = "
+param octaves: int = 4 in 1..=8
+param jitter: float = 0.5 in 0.0..=1.0
+node spot(at: vec2) -> (color: color) { color = vec4(smoothstep(0.5, 0.3, length(at))) }
+";
+
+#[test]
+fn nodes_with_a_period_tile() {
+    let library = Library::standard().expect("the library parses");
+    let mut wrong = Vec::new();
+    for node in NODES {
+        let text = source(Some("1"), &format!("let p = uv * 4.0 height = {node}"), USED);
+        match compiled(&library, &text) {
+            Ok(mut program) => {
+                for by in moves([1.0, 1.0]) {
+                    let count = differing(&mut program, [-1.25, 0.5], by, 1e-4);
+                    if count > 0 {
+                        wrong.push(format!("{node}: {count} pixels by {by:?}"));
+                    }
+                }
+            }
+            Err(errors) => wrong.push(errors),
+        }
+        let other = text.replace("uv * 4.0", "uv * 3.0");
+        if compiled(&library, &other).is_ok() {
+            wrong.push(format!("{node}: tiles with 3 cells in a period"));
         }
     }
     report(wrong);

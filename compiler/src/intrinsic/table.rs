@@ -323,6 +323,7 @@ pub static TABLE: &[Row] = &[
         doc: "`v`, as a pixel sees it that is `share` as wide: its change across the screen is that much of `v`'s.",
         value: each!((f32, f32) -> f32, |v, _| v),
         derivative: Rule(derivative::narrow),
+        tiling: By(tiling::narrow),
         form: Expand(expand::narrow),
     },
     Row {

@@ -413,6 +413,11 @@ pub fn dot(a: &mut Arguments) -> Result<Shift, Why> {
     Ok(sum)
 }
 
+/// Of a value that a narrower pixel sees: it is the value, whose width repeats.
+pub fn narrow(a: &mut Arguments) -> Result<Shift, Why> {
+    if a.x(1).repeats() { Ok(a.x(0).clone()) } else { Err(Why::Moves { by: a.show(1) }) }
+}
+
 /// Of a distance: between what moves alike.
 pub fn distance(a: &mut Arguments) -> Result<Shift, Why> {
     for component in 0..a.arguments[0].len() {
