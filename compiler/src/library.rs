@@ -33,6 +33,10 @@ const FILES: &[(&str, &str)] = &[
     ("std/filtering.tex", include_str!("../std/filtering.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),
     ("std/matrix.tex", include_str!("../std/matrix.tex")),
+    ("std/shapes.tex", include_str!("../std/shapes.tex")),
+    ("std/motifs.tex", include_str!("../std/motifs.tex")),
+    ("std/coordinates.tex", include_str!("../std/coordinates.tex")),
+    ("std/surface.tex", include_str!("../std/surface.tex")),
 ];
 
 /// What a name before `(` may mean.

@@ -2,15 +2,20 @@
 //! proportions in which they draw, and what they cost.
 
 mod animation;
+mod color;
+mod coordinates;
 mod cost;
 mod distribution;
 mod fades;
 mod far;
 mod layers;
 mod material;
+mod motifs;
+mod shapes;
 mod space;
 mod splat;
 mod streams;
 mod support;
+mod surface;
 mod transition;
 mod volumes;
