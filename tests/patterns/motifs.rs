@@ -28,14 +28,14 @@ const MASKS: &[Mask] = &[
     mask("bricks(uv, bond: flemish).cover", [3, 2], (1.9 + 0.9) / 3.0 * 0.9, INTEGRAL),
     mask("bricks(uv, bond: english).cover", [2, 2], (0.95 + 0.9) / 2.0 * 0.9, INTEGRAL),
     mask("weave(uv).warp + weave(uv).weft", [2, 2], 1.0 - 0.2 * 0.2, INTEGRAL),
-    mask("weave(uv, over: 3, under: 1).warp", [4, 4], 0.8 * 0.2 + 0.8 * 0.8 * 0.75, 0.35),
-    mask("dots(uv).cover", [1, 1], std::f64::consts::PI * 0.09, 0.35),
-    mask("zigzag(uv, rise: 0.5, share: 0.3).cover", [1, 1], 0.3, 0.35),
-    mask("herringbone(uv).cover", [4, 4], 0.9 * 0.95, 0.35),
-    mask("herringbone(uv, length: 3).cover", [6, 6], 0.9 * 2.9 / 3.0, 0.35),
-    mask("basket_weave(uv).cover", [2, 2], 0.95 * 0.9, 0.35),
-    mask("hexagons(uv).cover", [1, 2], 0.95 * 0.95, 0.35),
-    mask("truchet(uv, period: ivec2(3, 3)).cover", [3, 3], std::f64::consts::PI * 0.1, 0.35),
+    mask("weave(uv, over: 3, under: 1).warp", [4, 4], 0.8 * 0.2 + 0.8 * 0.8 * 0.75, 0.3),
+    mask("dots(uv).cover", [1, 1], std::f64::consts::PI * 0.09, 0.3),
+    mask("zigzag(uv, rise: 0.5, share: 0.3).cover", [1, 1], 0.3, 0.3),
+    mask("herringbone(uv).cover", [4, 4], 0.9 * 0.95, 0.3),
+    mask("herringbone(uv, length: 3).cover", [6, 6], 0.9 * 2.9 / 3.0, 0.3),
+    mask("basket_weave(uv).cover", [2, 2], 0.95 * 0.9, 0.3),
+    mask("hexagons(uv).cover", [1, 2], 0.95 * 0.95, 0.3),
+    mask("truchet(uv, period: ivec2(3, 3)).cover", [3, 3], std::f64::consts::PI * 0.1, 0.3),
 ];
 
 impl Mask {
