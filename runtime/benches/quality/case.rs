@@ -8,7 +8,8 @@ use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
 
-/// The graphs, by the names of their files in `graphs/` and in `benches/handwritten/`.
+/// The graphs, by the names of their files in `graphs/` and in `benches/handwritten/`. Each has a texture
+/// `t`, evaluated for four parts of a pixel, and one `once`, which is not.
 pub const GRAPHS: [&str; 7] = ["tiles", "scattered", "nested", "indirection", "priority", "choice", "baked"];
 
 /// Pixels along the side of a cell, which has 128 texels: from 16 times magnified to 64 cells a pixel.

@@ -18,7 +18,7 @@ pub struct Reference {
 /// Draws a case as many times as a pixel has strata, each time moved into another. Without gradients
 /// every sample is of the finest level and nothing fades.
 pub fn draw(graph: &str, case: Case) -> Outcome<Reference> {
-    let made = loaded(graph, "t", case, Gradients::None)?;
+    let made = loaded(graph, "once", case, Gradients::None)?;
     let mut scene = cpu::Scene::new(&made.program, &made.tables, 0)?;
     let count = case.samples();
     let mut sums = [(); 2].map(|()| vec![[0.0; 3]; (case.size()[0] * case.size()[1]) as usize]);
