@@ -68,12 +68,13 @@ fn normals_of_a_map_are_those_of_its_slopes() {
         "{HILLS} let map = bake(hills, size: 512)
         texture t(uv: vec2) -> (n: vec3) {{ n = normal_from_height(map.sample(uv).r, uv) }}"
     );
-    for (i, found) in (0..).zip(drawn(&text, 256)) {
-        let uv = [i % 256, i / 256].map(|i| (f64::from(i) + 0.5) / 256.0);
+    for (i, found) in (0..).zip(drawn(&text, 128)) {
+        let uv = [i % 128, i / 128].map(|i| (f64::from(i) + 0.5) / 128.0);
         let [u, v] = slopes(uv);
-        // The hills end at the border, where the map begins again.
+        // The hills end at the border, where the map begins again. Elsewhere the slope is that half a pixel
+        // on, and of heights stored as half floats.
         let inside = uv.iter().all(|x| (0.02..0.98).contains(x));
-        assert!(!inside || off(found, unit([-u, -v, 1.0])) < 0.04, "{uv:?}: {found:?}");
+        assert!(!inside || off(found, unit([-u, -v, 1.0])) < 0.06, "{uv:?}: {found:?}");
     }
     assert_eq!(Drawing::of(&text).worst().samples, 3.0);
 }
