@@ -87,7 +87,11 @@ fn bombing_is_brute_force() {
             covered += usize::from(wanted[3] > 0.5);
             for (seen, wanted) in pixel.into_iter().zip(wanted) {
                 // It stops at an alpha of 0.996.
-                assert!((seen - wanted).abs() < 0.0045, "{} a cell at {place:?}: {seen}, not {wanted}", case.per_cell);
+                assert!(
+                    (seen - wanted).abs() < 0.0045,
+                    "{} a cell at {place:?}: {seen}, not {wanted}",
+                    case.per_cell
+                );
             }
         }
         assert!(covered > (SIDE * SIDE / 4) as usize, "{covered}");

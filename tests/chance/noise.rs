@@ -58,13 +58,20 @@ fn means_and_variances_are_as_documented() {
         let text = format!(
             "texture t(uv: vec2) -> (value: float) {{\n    let cell = ifloor(uv * {SIDE}.0)\n    let b = hash(cell, seed: 99) * 512.0\n    let a = cell + fract(b.xy)\n    let p = {place}\n    let s = cell.y\n    value = {call}\n}}\n",
         );
-        let values: Vec<f64> = Drawing::of(&text).cells(SIDE).iter().map(|pixel| f64::from(pixel[0])).collect();
+        let values: Vec<f64> =
+            Drawing::of(&text).cells(SIDE).iter().map(|pixel| f64::from(pixel[0])).collect();
         let (found_mean, found_variance) = moments(&values);
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        println!("{call} in {dimensions}D: mean {found_mean:.5}, variance {found_variance:.6}, {least:.3} to {most:.3}");
-        if (found_mean - mean).abs() > 0.01 * variance.sqrt() || (found_variance / variance - 1.0).abs() > 0.01 {
-            off.push(format!("{call} in {dimensions}D: {found_mean} ({mean}), {found_variance} ({variance})"));
+        println!(
+            "{call} in {dimensions}D: mean {found_mean:.5}, variance {found_variance:.6}, {least:.3} to {most:.3}"
+        );
+        if (found_mean - mean).abs() > 0.01 * variance.sqrt()
+            || (found_variance / variance - 1.0).abs() > 0.01
+        {
+            off.push(format!(
+                "{call} in {dimensions}D: {found_mean} ({mean}), {found_variance} ({variance})"
+            ));
         }
     }
     assert!(off.is_empty(), "{}", off.join("\n"));

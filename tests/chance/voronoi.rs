@@ -60,7 +60,10 @@ impl Scatter {
     /// Random places, and what `voronoi` says of them.
     fn drawn(self, metric: &str) -> Vec<([f32; 3], [f32; 3])> {
         let places = if self.dimensions == 3 { "random.xyz" } else { "random.xy" };
-        let call = format!("voronoi({places} * 40.0 - 20.0, per_cell: {}, jitter: {:?}, metric: {metric})", self.per_cell, self.jitter);
+        let call = format!(
+            "voronoi({places} * 40.0 - 20.0, per_cell: {}, jitter: {:?}, metric: {metric})",
+            self.per_cell, self.jitter
+        );
         let text = |output: &str| {
             format!(
                 "texture t(uv: vec2) -> (out: vec3) {{\n    let random = hash(ifloor(uv * {SIDE}.0))\n    let v = {call}\n    out = {output}\n}}\n"
@@ -113,7 +116,9 @@ fn voronoi_is_brute_force() {
 #[test]
 fn the_near_search_is_seldom_wrong() {
     let text = |search: &str| {
-        format!("texture t(uv: vec2) -> (f1: float) {{\n    f1 = voronoi(uv * 64.0, search: {search}).f1\n}}\n")
+        format!(
+            "texture t(uv: vec2) -> (f1: float) {{\n    f1 = voronoi(uv * 64.0, search: {search}).f1\n}}\n"
+        )
     };
     let exact = Drawing::of(&text("exact")).cells(512);
     let near = Drawing::of(&text("near")).cells(512);

@@ -256,6 +256,7 @@ fn a_number_may_be_left_out_where_its_node_says_so() {
     assert_eq!(seen("uv, more: none, turned: |p| p.x"), 0.75);
     let found = errors(&text("none"));
     assert!(found.contains("E0222") && found.contains("`none` is not a value"), "{found}");
-    let found = errors("node n(a: vec2 = none) -> (c: vec2) { c = a }\ntexture t(uv: vec2) -> (c: vec2) { c = n() }");
+    let found =
+        errors("node n(a: vec2 = none) -> (c: vec2) { c = a }\ntexture t(uv: vec2) -> (c: vec2) { c = n() }");
     assert!(found.contains("E0222") && found.contains("`a` is declared here"), "{found}");
 }

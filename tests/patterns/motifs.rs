@@ -21,7 +21,7 @@ const INTEGRAL: f64 = 2e-3;
 
 const MASKS: &[Mask] = &[
     mask("checker(uv)", [2, 2], 0.5, INTEGRAL),
-    mask("stripes(uv.y, share: 0.3)", [1, 1], 0.3, INTEGRAL),
+    mask("stripes((uv).y, share: 0.3)", [1, 1], 0.3, INTEGRAL),
     mask("grid_lines(uv, thickness: 0.2)", [1, 1], 1.0 - 0.8 * 0.8, INTEGRAL),
     mask("bricks(uv).cover", [2, 2], 0.95 * 0.9, INTEGRAL),
     mask("bricks(uv, bond: stack).cover", [2, 1], 0.95 * 0.9, INTEGRAL),
@@ -223,5 +223,17 @@ fn truchet_lines_go_on() {
     let (left, right) = (near(2.0 - 8.0 * hair), near(2.0));
     for (row, (left, right)) in left.chunks(8).zip(right.chunks(8)).enumerate() {
         assert!((left[7][0] - right[0][0]).abs() < 0.001, "row {row}: {} and {}", left[7][0], right[0][0]);
+    }
+}
+
+/// The compiler proves of every mask that it tiles with its period.
+#[test]
+fn motifs_are_proved_to_tile() {
+    for m in MASKS {
+        let [x, y] = m.period;
+        let place = format!("uv * vec2({:?}, {:?})", f64::from(4 * x), f64::from(4 * y));
+        let cover = m.text.replace("(uv", &format!("({place}"));
+        let text = format!("texture t(uv: vec2) -> (c: float) tiles 1 {{ c = {cover} }}");
+        Drawing::of(&text);
     }
 }

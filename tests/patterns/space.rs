@@ -45,7 +45,8 @@ fn mean(pixels: &[[f32; 4]]) -> [f32; 4] {
 }
 
 /// A slanted plane through cells.
-const PLACE: &str = "let p = vec3(uv * CELLS, CELLS * (0.7 * uv.x + 0.3 * uv.y)) let (cell, at) = tile_map(p, 1)";
+const PLACE: &str =
+    "let p = vec3(uv * CELLS, CELLS * (0.7 * uv.x + 0.3 * uv.y)) let (cell, at) = tile_map(p, 1)";
 
 fn place(cells: &str) -> String {
     PLACE.replace("CELLS", cells)
@@ -67,7 +68,9 @@ fn copies_of_one_block_are_that_block_again() {
 fn blocks_blend_into_their_neighbours() {
     let folder = folder();
     for footprint in ["0.001", "0.05", "0.3", "0.8"] {
-        for (axis, way) in [("x", "vec3(1.0, 0.0, 0.0)"), ("y", "vec3(0.0, 1.0, 0.0)"), ("z", "vec3(0.0, 0.0, 1.0)")] {
+        for (axis, way) in
+            [("x", "vec3(1.0, 0.0, 0.0)"), ("y", "vec3(0.0, 1.0, 0.0)"), ("z", "vec3(0.0, 0.0, 1.0)")]
+        {
             // On both sides of a face, of an edge or of a corner between cells; each row another place.
             let body = format!(
                 "let row  = ifloor(uv.y * 64.0)
@@ -96,7 +99,8 @@ fn blocks_become_their_mean_from_afar_and_blank_ones_are_not_fetched() {
     assert_eq!(far, vec![mean; 256]);
     let blank = seen(&folder, &format!("{} seen = blocks.tiled(cell, at, |c| -1)", place("5.0")), 16);
     assert_eq!(blank, vec![[0.0; 4]; 256]);
-    let alone = drawing(&folder, &format!("{} seen = blocks.tiled(cell, at, |c| 1, edges: clamp)", place("5.0")));
+    let alone =
+        drawing(&folder, &format!("{} seen = blocks.tiled(cell, at, |c| 1, edges: clamp)", place("5.0")));
     assert_eq!(alone.worst().samples, 2.0);
 }
 

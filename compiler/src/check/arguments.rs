@@ -264,7 +264,9 @@ impl<'a> Checker<'a> {
             }
         };
         match (slot, &input.default) {
-            (Some(given), Some(default)) if is_none(default) && is_absent(declared, &given.wire) => Wire::None,
+            (Some(given), Some(default)) if is_none(default) && is_absent(declared, &given.wire) => {
+                Wire::None
+            }
             (Some(given), _) => self.coerce(f, &input.name.text, declared, given),
             (None, Some(default)) => {
                 if let Some(constant) = known.default {
