@@ -1,7 +1,7 @@
 //! The inputs of a texture, for the pixels of a batch.
 
 use crate::flat::Slope;
-use texgraph_compiler::intrinsic::{LANES, Lanes};
+use texgraph_compiler::intrinsic::{LANES, Lanes, wide};
 
 /// One component of an input that changes from pixel to pixel.
 #[derive(Clone, Copy)]
@@ -38,8 +38,13 @@ impl Places {
 impl Source {
     /// What it is at some places.
     pub fn fill(&self, places: &Places, lanes: &mut Lanes) {
-        for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
-            *to = self.slope.component(self.component, *x, *y).to_bits();
-        }
+        wide(
+            #[inline(always)]
+            || {
+                for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
+                    *to = self.slope.component(self.component, *x, *y).to_bits();
+                }
+            },
+        );
     }
 }

@@ -74,6 +74,7 @@ pub struct Planned {
 }
 
 /// One operation of a run, in all lanes.
+#[derive(Clone)]
 pub enum Step {
     /// A row of intrinsics that applies to each component on its own.
     Each {
@@ -116,6 +117,7 @@ pub enum Step {
 pub type Targets = [Option<Register>; 4];
 
 /// A call.
+#[derive(Clone)]
 pub struct Call {
     /// Which function.
     pub function: usize,
@@ -127,6 +129,7 @@ pub struct Call {
 
 /// A fold. The frame of its body begins with the accumulators, the number of the step and the
 /// captures, then one register for the number of steps.
+#[derive(Clone)]
 pub struct Loop {
     /// One step.
     pub body: usize,

@@ -28,13 +28,13 @@ impl Texture {
         let longer: Places = std::array::from_fn(|i| squared(dx, i).max(squared(dy, i)));
         // Neighbours often have the same gradient, and logarithms are dear.
         let (mut last, mut level) = (f32::NAN, 0);
-        for i in lanes_of(mask) {
+        each_lane(mask, |i| {
             if longer[i] != last {
                 last = longer[i];
                 level = (0.5 * libm::log2f(last)).to_bits();
             }
             to[i] = level;
-        }
+        });
     }
 }
 
@@ -105,10 +105,16 @@ impl Sampler {
 
     /// Two levels weighed linearly; one where the level of detail is whole.
     fn linear(&mut self, texture: &Texture, layers: &Layers<'_>, mask: Mask, to: &mut [Lanes; 4]) {
-        for ((lod, upper), share) in self.lod.iter().zip(&mut self.upper).zip(&mut self.share) {
-            *upper = floor(*lod);
-            *share = lod - *upper;
-        }
+        let Sampler { lod, upper, share, .. } = self;
+        wide(
+            #[inline(always)]
+            || {
+                for ((lod, upper), share) in lod.iter().zip(upper).zip(share) {
+                    *upper = floor(*lod);
+                    *share = lod - *upper;
+                }
+            },
+        );
         let mut left = mask;
         while let Some(first) = lanes_of(left).next() {
             let upper = self.upper[first];
@@ -184,9 +190,15 @@ impl Taps {
     fn find(&mut self, wrap: Wrap, level: &Level, x: &Places, y: &Places) {
         self.x.find(wrap, level.size.x, x);
         self.y.find(wrap, level.size.y, y);
-        for row in self.y.low.iter_mut().chain(&mut self.y.high) {
-            *row *= level.size.x;
-        }
+        let Axis { low, high, .. } = &mut self.y;
+        wide(
+            #[inline(always)]
+            || {
+                for (low, high) in low.iter_mut().zip(high) {
+                    (*low, *high) = (*low * level.size.x, *high * level.size.x);
+                }
+            },
+        );
     }
 
     /// What they come to in a lane.

@@ -3,6 +3,7 @@
 //! What is over known registers alone is done at once, on the machine, and is known itself. All
 //! else becomes a step with new registers for its results; `registers` then lets them share.
 
+mod inline;
 mod inputs;
 mod known;
 mod operations;
@@ -13,6 +14,7 @@ use super::registers::allocate;
 use super::texture::Texture;
 use crate::pass::Pass;
 use crate::render::{RenderError, Request};
+use inline::Body;
 use std::collections::HashMap;
 use texgraph_compiler::graph::regions::{Branch, Region, Regions, Weights};
 use texgraph_compiler::graph::{Function, FunctionId, Graph, Operation, Scalar, Type, Value};
@@ -49,6 +51,8 @@ pub struct Planner<'a> {
     /// The known register of some bits.
     numbers: HashMap<u32, Register>,
     machine: Machine,
+    /// Of each function that callers take over.
+    bodies: Vec<Option<Body>>,
     /// Of the function being planned.
     states: Vec<State>,
     planned: Planned,
@@ -75,6 +79,7 @@ impl<'a> Planner<'a> {
             plan,
             numbers: [(0, Register::ZERO)].into(),
             machine: Machine::default(),
+            bodies: Vec::new(),
             states: Vec::new(),
             planned: Planned::default(),
             registers: 0,
@@ -125,6 +130,7 @@ impl<'a> Planner<'a> {
             let components = self.components(*value);
             self.planned.outputs.extend(components.iter().take(usize::from(function.ty(*value).width())));
         }
+        self.bodies.push(Body::of(&self.planned, self.registers));
         let pinned = if is_body { self.planned.inputs + 1 } else { 0 };
         allocate(&mut self.planned, self.registers, pinned);
         if id == self.plan.entry {

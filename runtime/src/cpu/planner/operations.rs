@@ -114,6 +114,10 @@ impl Planner<'_> {
         arguments: Vec<Register>,
         cost: u64,
     ) -> Result<(), RenderError> {
+        if let Some(outputs) = self.inlined(function, &arguments) {
+            self.set(value, State::Outputs(outputs));
+            return Ok(());
+        }
         // What the callee makes of nothing that it is given is known here too.
         let outputs = self.plan.functions.get(function).map_or(Vec::new(), |callee| callee.outputs.clone());
         let place = |output: Register| if output.is_known() { output } else { self.fresh() };
@@ -132,17 +136,26 @@ impl Planner<'_> {
         cost: u64,
     ) -> Result<(), RenderError> {
         let starts = self.flat(function, &fold.starts);
-        let outputs: Vec<Register> = starts.iter().map(|_| self.fresh()).collect();
-        let step = Step::Fold(Box::new(Loop {
+        let mut run = Loop {
             body: fold.body.0 as usize,
             condition: fold.condition.map(|condition| condition.0 as usize),
             starts,
             captures: self.flat(function, &fold.captures),
             steps: self.scalar(fold.steps),
             most: fold.most,
-            results: outputs.iter().copied().enumerate().collect(),
-        }));
-        self.push_run(value, step, outputs, cost)
+            results: Vec::new(),
+        };
+        let all_known = run.starts.iter().chain(&run.captures).all(|register| register.is_known());
+        if !all_known
+            && run.condition.is_none()
+            && let Some(accumulators) = self.unrolled(&run)
+        {
+            self.set(value, State::Outputs(accumulators));
+            return Ok(());
+        }
+        let outputs: Vec<Register> = run.starts.iter().map(|_| self.fresh()).collect();
+        run.results = outputs.iter().copied().enumerate().collect();
+        self.push_run(value, Step::Fold(Box::new(run)), outputs, cost)
     }
 
     /// Does a call or a fold now if it is over known registers, else leaves it to each run.
