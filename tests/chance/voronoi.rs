@@ -6,7 +6,7 @@ use crate::support::Drawing;
 /// Pixels along the side of a picture: more than 100,000 in all.
 const SIDE: u32 = 320;
 /// Cells on each side of a place that brute force looks at.
-const AROUND: i32 = 5;
+const AROUND: i32 = 4;
 
 /// A way to measure distances.
 type Metric = fn([f32; 3]) -> f32;
