@@ -4,10 +4,10 @@
 use crate::support::{Drawing, errors};
 
 /// Cells a side, of which a pixel covers 64 × 64 from afar.
-const CELLS: u32 = 128;
+const CELLS: u32 = 64;
 const AFAR: u32 = CELLS / 64;
-/// Pixels a cell of the reference.
-const FINE: u32 = 8;
+/// Pixels a cell of the reference; a bake has half as many texels.
+const FINE: u32 = 16;
 
 /// A node that fades: what it needs, and how it is called at the place `p` in cells, with `FAR` among
 /// its arguments.
@@ -50,8 +50,8 @@ const NODES: &[Fading] = &[
     Fading {
         name: "tile_transform",
         head: "",
-        call: "tile_transform(|c, at| hue(virtual_random(c).w) * coverage(0.5 - length(at - 0.5)),
-               cell, at, scale: |c| virtual_random(c, stream: 1).x FAR)",
+        call: "tile_transform(|c, at| hue(virtual_random(c).w) * coverage(0.4 - length(at - 0.5)),
+               cell, at, scale: |c| 0.5 + 0.5 * virtual_random(c, stream: 1).x FAR)",
     },
     Fading {
         name: "share",
@@ -85,7 +85,7 @@ impl Fading {
                 let corners    = ivec4(hash(cell) * 2.0)
                 seen           = {}
             }}",
-            CELLS * FINE,
+            CELLS * FINE / 2,
             self.head,
             near(""),
             near(&given),
@@ -213,7 +213,7 @@ fn all_maps_of_a_material_keep_their_mean() {
         )
     };
     for overflow in ["shrink", "neighbours"] {
-        let near = Drawing::of(&text(overflow, "")).seen([1024; 2], [0.0, 0.0, 1.0, 1.0]);
+        let near = Drawing::of(&text(overflow, "")).seen([512; 2], [0.0, 0.0, 1.0, 1.0]);
         let far = Drawing::of(&text(overflow, ", far: tiles.average")).seen_with(
             "cells=4096",
             [64; 2],

@@ -18,13 +18,14 @@ fn agrees(arguments: &str, turn: &str, scale: &str, round: bool) {
                     let size = hash(cell, seed: 1936747637 + 3 * k)
                     let at   = rotation(-mix({turn}, size.y)) * (p - cell - draw.xy) / mix({scale}, size.x) + 0.5
                     let near = abs(at - 0.5)
-                    let cover = coverage(0.5 - max(near.x, near.y))
+                    let cover = {}
                     above = if cover > 0.0 && draw.w < 0.8 {{ above + stamp(at, hash(cell, seed: 1936747638 + 3 * k)) * cover * (1.0 - above.a) }} else {{ above }}
                 }}
             }}
             seen = all - splat(p, {stamp}, per_cell: 2, density: |m| 0.8, {arguments})
          }}",
-        if round { "0.0" } else { "0.5" }
+        if round { "0.0" } else { "0.5" },
+        if round { "1.0" } else { "coverage(0.5 - max(near.x, near.y))" },
     );
     let worst = Drawing::of(&text).cells(192).iter().flatten().fold(0.0, |worst: f32, x| worst.max(x.abs()));
     assert!(worst < 1e-5, "{arguments}: {worst}");
