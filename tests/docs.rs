@@ -10,6 +10,7 @@ use texgraph_runtime::project::Project;
 /// The pages that show pictures or examples.
 const PAGES: &[&str] = &[
     "README.md",
+    "docs/gallery.md",
     "docs/guide.md",
     "docs/language.md",
     "docs/embedding.md",

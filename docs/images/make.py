@@ -42,11 +42,16 @@ def rows():
     files = {
         "distribution": ["uniform", "by_probability", "by_area", "dithered"],
         "leaves": ["basic", "by_probability", "by_density"],
+        "bombing": ["flowers", "discs", "spheres", "halo"],
+        "cells": ["cracked_mud", "giraffe", "scales", "stained"],
+        "nature": ["marble_slab", "wood_board", "granite_slab", "rusty_plate", "sky", "starfield", "city"],
     }
     for file, textures in files.items():
-        strip = Image.new("RGB", (len(textures) * 328 - 8, 320), "white")
+        across = min(len(textures), 4)
+        down = (len(textures) + 3) // 4
+        strip = Image.new("RGB", (across * 328 - 8, down * 328 - 8), "white")
         for i, name in enumerate(textures):
-            strip.paste(render(f"examples/{file}.tex:{name}", 320), (i * 328, 0))
+            strip.paste(render(f"examples/{file}.tex:{name}", 320), (i % 4 * 328, i // 4 * 328))
         save(strip, f"{file}.jpg")
 
 

@@ -43,14 +43,10 @@ impl Bombing {
         let step = CELLS / SIDE as f32 / size;
         let steepest = away.map(|d| (d / length).abs() * step).into_iter().fold(0.0, f32::max);
         let disc = ((0.5 - far) / steepest.max(1e-6) + 0.5).clamp(0.0, 1.0);
-        // Beyond its square a stamp ends.
-        let side = away.map(|d| (d / size).abs()).into_iter().fold(0.0, f32::max);
-        let square = ((0.5 - side) / step + 0.5).clamp(0.0, 1.0);
-        let [red, green, blue, _] = hash(cell, seed + 4);
         // Beyond its reach no cell looks for it.
         let reach = 0.5 * self.scale[1];
         let most = away.map(f32::abs).into_iter().fold(0.0, f32::max);
-        let cover = disc * square * ((reach - most) / (CELLS / SIDE as f32)).clamp(0.0, 1.0);
+        let cover = disc * ((reach - most) / (CELLS / SIDE as f32)).clamp(0.0, 1.0);
         (cover > 0.0).then_some(Stamp { priority: draw[3], color: [red, green, blue], cover })
     }
 
