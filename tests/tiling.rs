@@ -64,6 +64,7 @@ const TILES: &[(&str, &str, &str)] = &[
     ("2", "height = mirrored.sample(uv).r", BAKED),
     ("1", "let s = baked.size height = baked.texel(ifloor(uv * s) % s).r", BAKED),
     ("1", "height = long(uv * 2.0)", LONG),
+    ("1", "height = deep(uv * 8.0)", DEEP),
     ("1", "height = float(fold (n = ifloor(uv.x * 4.0) % 4) for i in 0..9 while n > 1 { n = n - 1 })", ""),
     (
         "1",
@@ -202,6 +203,17 @@ const BAKED: &str = "
 let baked    = bake(|at| at.x * at.x + at.y, size: 8)
 let mirrored = bake(|at| at.x * at.x + at.y, size: 8, wrap: mirror)
 let clamped  = bake(|at| at.x * at.x + at.y, size: 8, wrap: clamp)
+";
+const DEEP: &str = "
+node deep(p: vec2) -> (value: float) {
+    value = fold (a = 0.0) for i in 0..12 {
+        a = a + fold (b = 0.0) for j in 0..30 {
+            b = b + fold (c = 0.0) for k in 0..30 {
+                c = c + hash((ifloor(p) + ivec2(i + j, k)) % 8).x * 0.001
+            }
+        }
+    }
+}
 ";
 const LONG: &str = "
 node long(p: vec2) -> (value: float) {
