@@ -26,7 +26,9 @@ pub fn sheet(file: &Path, node: &str) -> Vec<u8> {
         imageops::replace(&mut sheet, &drawn(file, &texture, output), i64::from(i as u32 * (SIDE + GAP)), 0);
     }
     let mut bytes = Vec::new();
-    JpegEncoder::new_with_quality(&mut bytes, QUALITY).encode_image(&sheet).expect("a JPEG of this size can be");
+    JpegEncoder::new_with_quality(&mut bytes, QUALITY)
+        .encode_image(&sheet)
+        .expect("a JPEG of this size can be");
     bytes
 }
 

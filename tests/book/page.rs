@@ -98,7 +98,8 @@ fn first_sentence(text: &str) -> (&str, &str) {
 pub fn contents(groups: &[Group]) -> String {
     let mut page = "# The library\n\nEvery node with its signature, a picture and the text that draws it. Made from the doc comments of\n`compiler/std` by `TEXGRAPH_BOOK=write cargo test --test book`.\n\n| page | nodes |\n| --- | --- |\n".to_owned();
     for group in groups {
-        let nodes: Vec<String> = group.nodes().iter().map(|node| format!("[{node}]({}.md#{node})", group.name)).collect();
+        let nodes: Vec<String> =
+            group.nodes().iter().map(|node| format!("[{node}]({}.md#{node})", group.name)).collect();
         let _ = writeln!(page, "| [{0}]({0}.md) | {1} |", group.name, nodes.join(", "));
     }
     page + "| [intrinsics](intrinsics.md) | what is not written in the language |\n"

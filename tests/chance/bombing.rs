@@ -46,6 +46,7 @@ impl Bombing {
         // Beyond its reach no cell looks for it.
         let reach = 0.5 * self.scale[1];
         let most = away.map(f32::abs).into_iter().fold(0.0, f32::max);
+        let [red, green, blue, _] = hash(cell, seed + 4);
         let cover = disc * ((reach - most) / (CELLS / SIDE as f32)).clamp(0.0, 1.0);
         (cover > 0.0).then_some(Stamp { priority: draw[3], color: [red, green, blue], cover })
     }

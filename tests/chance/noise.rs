@@ -76,3 +76,99 @@ fn means_and_variances_are_as_documented() {
     }
     assert!(off.is_empty(), "{}", off.join("\n"));
 }
+
+/// What repeats after eight cells, in calls of `p`.
+const TILED: [&str; 12] = [
+    "noise(p, period: ivec2(8))",
+    "noise(vec3(p, 0.3), period: ivec3(8))",
+    "noise(vec4(p, 0.3, 0.6), period: ivec4(8))",
+    "value_noise(p, period: ivec2(8))",
+    "simplex(p, period: ivec2(8))",
+    "simplex(vec3(p, 0.3), period: ivec3(8))",
+    "simplex(vec4(p, 0.3, 0.6), period: ivec4(8))",
+    "gabor(p, period: ivec2(8))",
+    "worley(p, period: ivec2(8))",
+    "fbm(p, octaves: 5, period: ivec2(8))",
+    "turbulence(p, octaves: 5, period: ivec2(8))",
+    "ridged(warp(p, period: ivec2(8)), octaves: 1, period: ivec2(8))",
+];
+
+#[test]
+fn tiled_noises_match_at_the_border_to_the_last_bit() {
+    for call in TILED {
+        let text = format!(
+            "texture t(uv: vec2) -> (value: float) {{\n    let p = uv * 8.0\n    value = {call}\n}}\n"
+        );
+        let drawing = Drawing::of(&text);
+        let here = drawing.seen([64; 2], [0.0, 0.0, 1.0, 1.0]);
+        let spread = moments(&here.iter().map(|pixel| f64::from(pixel[0])).collect::<Vec<_>>()).1;
+        assert!(spread > 0.005, "{call} is flat: {spread}");
+        for region in [[1.0, 0.0, 2.0, 1.0], [0.0, 1.0, 1.0, 2.0], [-3.0, 2.0, -2.0, 3.0]] {
+            let there = drawing.seen([64; 2], region);
+            let differ = here.iter().zip(&there).filter(|(a, b)| a[0].to_bits() != b[0].to_bits()).count();
+            assert_eq!(differ, 0, "{call} at {region:?}");
+        }
+    }
+}
+
+/// Pixels along the side of a field, of eight a cell.
+const FIELD: usize = 256;
+
+/// The power at a frequency, in cycles a cell, of a field seen through a Hann window.
+fn power(field: &[f64], frequency: [f64; 2]) -> f64 {
+    let wave = |axis: usize| -> Vec<[f64; 2]> {
+        let turn = std::f64::consts::TAU * frequency[axis] / 8.0;
+        (0..FIELD).map(|i| [(turn * i as f64).cos(), (turn * i as f64).sin()]).collect()
+    };
+    let (across, down) = (wave(0), wave(1));
+    let mut sum = [0.0; 2];
+    for (row, [c, s]) in field.chunks_exact(FIELD).zip(down) {
+        let [re, im] =
+            row.iter().zip(&across).fold([0.0; 2], |[re, im], (v, [c, s])| [re + v * c, im + v * s]);
+        sum = [sum[0] + re * c - im * s, sum[1] + re * s + im * c];
+    }
+    sum[0] * sum[0] + sum[1] * sum[1]
+}
+
+/// How much more power a noise has along the axes than along the diagonals.
+fn axes_over_diagonals(call: &str) -> f64 {
+    let hann = |i: usize| (std::f64::consts::PI * (i as f64 + 0.5) / FIELD as f64).sin().powi(2);
+    let mut powers = [0.0; 2];
+    for seed in 0..16 {
+        let text = format!(
+            "texture t(uv: vec2) -> (value: float) {{\n    let p = uv * 32.0 + 100.0 * {seed}\n    let s = {seed}\n    value = {call}\n}}\n"
+        );
+        let seen = Drawing::of(&text).cells(FIELD as u32);
+        let field: Vec<f64> = seen
+            .iter()
+            .enumerate()
+            .map(|(i, v)| f64::from(v[0]) * hann(i % FIELD) * hann(i / FIELD))
+            .collect();
+        for (sum, first) in powers.iter_mut().zip([0.0_f64, 45.0]) {
+            for (radius, away) in (2..28).flat_map(|r| [-8.0, 0.0, 8.0, 82.0, 90.0, 98.0].map(|a| (r, a))) {
+                let angle = (first + away).to_radians();
+                let radius = f64::from(radius) * 0.1;
+                *sum += radius * power(&field, [radius * angle.cos(), radius * angle.sin()]);
+            }
+        }
+    }
+    powers[0] / powers[1]
+}
+
+#[test]
+fn simplex_and_gabor_look_alike_in_all_directions() {
+    let bounds = [
+        ("noise(p, seed: s)", f64::INFINITY),
+        ("value_noise(p, seed: s)", f64::INFINITY),
+        ("worley(p, seed: s) - 0.4292", f64::INFINITY),
+        ("simplex(p, seed: s)", 1.15),
+        ("gabor(p, seed: s)", 1.15),
+    ];
+    let ratios = bounds.map(|(call, bound)| (call, bound, axes_over_diagonals(call)));
+    for (call, _, ratio) in ratios {
+        println!("{call}: {ratio:.3} times as much power along the axes as along the diagonals");
+    }
+    for (call, bound, ratio) in ratios {
+        assert!(ratio.max(1.0 / ratio) <= bound, "{call}: {ratio}");
+    }
+}
