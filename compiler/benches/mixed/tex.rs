@@ -6,7 +6,8 @@ use super::{Arithmetic, Blend, Kind, Mixed, Shape, number};
 pub fn tex(graph: &Mixed) -> String {
     let mut text = format!(
         "//! The mixed graph of {} nodes: a scaled place, images with and without hex tiling, noise, fBm,\n\
-         //! arithmetic and blends, for comparing compilers (compiler/benches/mixed).\n\n",
+         //! arithmetic and blends, for comparing compilers (compiler/benches/mixed). Noises are taken as\n\
+         //! they are, without filtering, as those of the other compilers.\n\n",
         graph.nodes.len()
     );
     let pictures = graph.pictures();
@@ -37,8 +38,8 @@ fn expression(graph: &Mixed, node: Kind) -> String {
             format!("{}.hex_tile(uv * {})", super::PICTURES[picture], number(scale))
         }
         Kind::Image(picture, scale) => format!("{}.sample(uv * {})", super::PICTURES[picture], number(scale)),
-        Kind::Noise(place) => format!("noise({}) * 0.5 + 0.5", name(place)),
-        Kind::Fractal(place, octaves) => format!("fbm({}, octaves: {octaves})", name(place)),
+        Kind::Noise(place) => format!("noise({}, width: 0.0) * 0.5 + 0.5", name(place)),
+        Kind::Fractal(place, octaves) => format!("fbm({}, octaves: {octaves}, width: 0.0)", name(place)),
         Kind::Cell(place) => format!("hash(ifloor({})).x", name(place)),
         Kind::Warp(place, by) => format!("{} + {}", name(place), name(by)),
         Kind::Arithmetic(operator, a, b) => arithmetic(operator, &name(a), &name(b)),
