@@ -40,11 +40,14 @@ impl Source {
     pub fn fill(&self, places: &Places, lanes: &mut Lanes) {
         wide(
             #[inline(always)]
-            || {
-                for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
-                    *to = self.slope.component(self.component, *x, *y).to_bits();
-                }
-            },
+            || self.write(places, lanes),
         );
+    }
+
+    #[inline(always)]
+    fn write(self, places: &Places, lanes: &mut Lanes) {
+        for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
+            *to = self.slope.component(self.component, *x, *y).to_bits();
+        }
     }
 }

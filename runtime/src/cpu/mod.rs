@@ -2,8 +2,8 @@
 //!
 //! The twin of the GPU: it needs no driver, defines what a program is worth, and is what the GPU's
 //! pictures are compared with. A plan is made once for a picture: the graph without what the wanted
-//! output does not need becomes steps over registers, each one component of a value in 64 lanes;
-//! what no pixel changes is computed while planning. A machine then runs the plan for 64 pixels at
+//! output does not need becomes steps over registers, each one component of a value in 128 lanes;
+//! what no pixel changes is computed while planning. A machine then runs the plan for 128 pixels at
 //! a time: every step is a loop over lanes by the function that defines the row, so a pixel has the
 //! same bits as a folded constant, whatever batch it is in. Batches are spread over all cores.
 //!

@@ -105,16 +105,10 @@ impl Sampler {
 
     /// Two levels weighed linearly; one where the level of detail is whole.
     fn linear(&mut self, texture: &Texture, layers: &Layers<'_>, mask: Mask, to: &mut [Lanes; 4]) {
-        let Sampler { lod, upper, share, .. } = self;
-        wide(
-            #[inline(always)]
-            || {
-                for ((lod, upper), share) in lod.iter().zip(upper).zip(share) {
-                    *upper = floor(*lod);
-                    *share = lod - *upper;
-                }
-            },
-        );
+        for ((lod, upper), share) in self.lod.iter().zip(&mut self.upper).zip(&mut self.share) {
+            *upper = floor(*lod);
+            *share = lod - *upper;
+        }
         let mut left = mask;
         while let Some(first) = lanes_of(left).next() {
             let upper = self.upper[first];
@@ -190,13 +184,11 @@ impl Taps {
     fn find(&mut self, wrap: Wrap, level: &Level, x: &Places, y: &Places) {
         self.x.find(wrap, level.size.x, x);
         self.y.find(wrap, level.size.y, y);
-        let Axis { low, high, .. } = &mut self.y;
         wide(
             #[inline(always)]
             || {
-                for (low, high) in low.iter_mut().zip(high) {
-                    (*low, *high) = (*low * level.size.x, *high * level.size.x);
-                }
+                scale(&mut self.y.low, level.size.x);
+                scale(&mut self.y.high, level.size.x);
             },
         );
     }
@@ -213,26 +205,46 @@ impl Taps {
 impl Axis {
     fn find(&mut self, wrap: Wrap, size: i32, places: &Places) {
         match wrap {
-            Wrap::Repeat => self.each(size, places, |at| wrapped(at, size)),
-            Wrap::Clamp => self.each(size, places, |at| at.clamp(0, size - 1)),
-            Wrap::Mirror => self.each(size, places, |at| mirrored(at, size)),
+            Wrap::Repeat => self.each(size, places, move |at| wrapped(at, size)),
+            Wrap::Clamp => self.each(size, places, move |at| at.clamp(0, size - 1)),
+            Wrap::Mirror => self.each(size, places, move |at| mirrored(at, size)),
         }
     }
 
     #[inline(always)]
-    fn each(&mut self, size: i32, places: &Places, inside: impl Fn(i32) -> i32) {
-        let slots = self.low.iter_mut().zip(&mut self.high).zip(&mut self.share);
+    fn each(&mut self, size: i32, places: &Places, inside: impl Fn(i32) -> i32 + Copy) {
         wide(
             #[inline(always)]
-            || {
-                for (((low, high), share), place) in slots.zip(places) {
-                    let place = place * size as f32 - 0.5;
-                    let first = floor(place);
-                    let number = small_int(first);
-                    (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
-                }
-            },
+            || find_texels(&mut self.low, &mut self.high, &mut self.share, size, places, inside),
         );
+    }
+}
+
+/// Multiplies numbers.
+#[inline(always)]
+fn scale(numbers: &mut [i32; LANES], factor: i32) {
+    for number in numbers {
+        *number *= factor;
+    }
+}
+
+// Loops inside `wide` are functions of their own: their arguments are told apart there.
+
+/// Writes, for each place along an axis, the two texels around it and the share of the second.
+#[inline(always)]
+fn find_texels(
+    low: &mut [i32; LANES],
+    high: &mut [i32; LANES],
+    share: &mut Places,
+    size: i32,
+    places: &Places,
+    inside: impl Fn(i32) -> i32,
+) {
+    for (((low, high), share), place) in low.iter_mut().zip(high).zip(share).zip(places) {
+        let place = place * size as f32 - 0.5;
+        let first = floor(place);
+        let number = small_int(first);
+        (*low, *high, *share) = (inside(number), inside(number + 1), place - first);
     }
 }
 
@@ -247,14 +259,16 @@ fn reduce(wrap: Wrap, lanes: &Lanes, to: &mut Places) {
 
 #[inline(always)]
 fn reduce_by(lanes: &Lanes, to: &mut Places, reduce: impl Fn(f32) -> f32) {
+    #[inline(always)]
+    fn each(lanes: &Lanes, to: &mut Places, reduce: impl Fn(f32) -> f32) {
+        for (to, bits) in to.iter_mut().zip(lanes) {
+            let reduced = reduce(f32::from_bits(*bits));
+            *to = if reduced.is_finite() { reduced } else { 0.0 };
+        }
+    }
     wide(
         #[inline(always)]
-        || {
-            for (to, bits) in to.iter_mut().zip(lanes) {
-                let reduced = reduce(f32::from_bits(*bits));
-                *to = if reduced.is_finite() { reduced } else { 0.0 };
-            }
-        },
+        || each(lanes, to, reduce),
     );
 }
 

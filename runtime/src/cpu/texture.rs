@@ -91,16 +91,11 @@ impl Texture {
         to: &mut [Lanes; 4],
     ) {
         let level = &self.levels[0];
-        let (last, layers) = (level.size - 1, level.layers - 1);
+        let layers = level.layers - 1;
         let mut places = [0; LANES];
         wide(
             #[inline(always)]
-            || {
-                for ((place, x), y) in places.iter_mut().zip(x).zip(y) {
-                    let row = (*y as i32).clamp(0, last.y) * level.size.x;
-                    *place = level.start as u32 + (row + (*x as i32).clamp(0, last.x)) as u32;
-                }
-            },
+            || level.places([x, y], &mut places),
         );
         if layers > 0 {
             for (place, layer) in places.iter_mut().zip(layer) {
@@ -129,6 +124,16 @@ fn component<T>(texels: &[T], places: &Lanes, mask: Mask, to: &mut Lanes, bits: 
 }
 
 impl Level {
+    /// Where texels of the first layer are; a place outside is moved inside.
+    #[inline(always)]
+    fn places(self, [x, y]: [&Lanes; 2], to: &mut Lanes) {
+        let (last, start) = (self.size - 1, self.start as u32);
+        for ((to, x), y) in to.iter_mut().zip(x).zip(y) {
+            let row = (*y as i32).clamp(0, last.y) * self.size.x;
+            *to = start + (row + (*x as i32).clamp(0, last.x)) as u32;
+        }
+    }
+
     /// Where a layer's texels begin, row by row.
     pub fn index(&self, layer: i32) -> usize {
         self.start + layer as usize * (self.size.y * self.size.x) as usize
