@@ -2,6 +2,7 @@
 //! at one cell are the same number (Lefebvre & Neyret 2003, §3.2).
 
 use crate::support::Drawing;
+use std::path::Path;
 
 /// Cells a side that draws are compared in.
 const CELLS: u32 = 512;
@@ -9,6 +10,9 @@ const CELLS: u32 = 512;
 const BINS: usize = 16;
 /// Texels of a picture that says where it is read.
 const TEXELS: u32 = 256;
+/// Seeds of a stream at most, and what is greater than other numbers beside a seed.
+const OF_A_STREAM: i64 = 256;
+const LEAST_BASE: i64 = 1_000_000_000;
 
 /// What the nodes draw for a cell on their default streams, four numbers in [0, 1) each, or constants.
 const DRAWS: &[(&str, &str)] = &[
@@ -18,6 +22,7 @@ const DRAWS: &[(&str, &str)] = &[
     ("dither", "vec4(dither(cell, vec2(0.5)) / 2.0, 0.0, 0.0)"),
     ("tiled", "pattern.tiled(cell, vec2(0.3, 0.1), |c| 0, orient: 8)"),
     ("hex_tile", "vec4(fract(picture.hex_tile(to_grid * cell).rg - to_grid * cell), 0.0, 0.0)"),
+    ("noise", "vec4(fract(noise(cell + vec2(0.5, 0.25)) * 8.0), 0.0, 0.0, 0.0)"),
     ("splat, its middle", "vec4(fract(0.5 - own(p, |at, rnd| vec4(at, 0.0, 1.0)).xy), 0.0, 0.0)"),
     ("splat, its size", "vec4(own(p, |at, rnd| vec4(footprint(p) / footprint(at) - 1.0)))"),
     ("splat, its numbers", "own(p, |at, rnd| rnd)"),
@@ -96,34 +101,42 @@ fn draws_of_all_nodes_at_one_cell_are_independent() {
     println!("at most {worst:.2} standard deviations");
 }
 
-/// The seeds in the library's texts: each is a base and what is counted on from it.
-const LIBRARY: &[(&str, &str)] = &[
-    ("tiling", include_str!("../../compiler/std/tiling.tex")),
-    ("placing", include_str!("../../compiler/std/placing.tex")),
-    ("draws", include_str!("../../compiler/std/draws.tex")),
-    ("distribution", include_str!("../../compiler/std/distribution.tex")),
-    ("splat", include_str!("../../compiler/std/splat.tex")),
-    ("hex", include_str!("../../compiler/std/hex.tex")),
-];
+/// The bases of seeds in the library's texts, with their files: the large numbers where a seed is made.
+/// Those of one file that stand side by side are draws of one node.
+fn bases() -> Vec<(i64, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("compiler/std");
+    let files = std::fs::read_dir(folder).expect("the library is there");
+    let mut bases: Vec<(i64, String)> =
+        files.flat_map(|entry| bases_of(&entry.expect("readable").path())).collect();
+    // The one whose streams begin at 0.
+    bases.push((0, "virtual_index".to_owned()));
+    bases.sort();
+    bases.dedup_by(|(high, two), (low, one)| one == two && *high - *low < OF_A_STREAM);
+    bases
+}
+
+fn bases_of(file: &Path) -> Vec<(i64, String)> {
+    let text = std::fs::read_to_string(file).expect("it is UTF-8");
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let makes_a_seed = |line: &&str| {
+        !line.trim_start().starts_with("//") && (line.contains("seed") || line.contains("stream +"))
+    };
+    let words = text.lines().filter(makes_a_seed).flat_map(|line| line.split(|c: char| !c.is_ascii_digit()));
+    let numbers = words.filter_map(|word| word.parse().ok());
+    numbers.filter(|number| *number > LEAST_BASE).map(|number| (number, name.to_string())).collect()
+}
 
 /// 256 seeds for each of 1,001 streams, of which 64 stamps take three each: no other base is so near.
 #[test]
 fn the_seeds_of_a_thousand_streams_are_apart() {
-    let splat = LIBRARY.iter().find(|(name, _)| *name == "splat").map(|(_, text)| *text).unwrap_or_default();
+    let splat = include_str!("../../compiler/std/splat.tex");
     assert!(splat.contains("+ 256 * stream + 3 * k") && splat.contains("0..per_cell max 64"));
-    let numbers = LIBRARY.iter().flat_map(|(name, text)| {
-        let code = text.lines().filter(|line| line.contains("seed") && !line.trim_start().starts_with("//"));
-        let words = code.flat_map(|line| line.split(|c: char| !c.is_ascii_digit()));
-        words.filter_map(|word| word.parse::<i64>().ok()).map(move |number| (*name, number))
-    });
-    // Small numbers count stamps, those of a base are large; streams without one begin at 0.
-    let mut bases: Vec<(&str, i64)> = numbers.filter(|(_, number)| *number > 1_000_000).collect();
-    bases.push(("virtual_index", 0));
-    bases.sort_by_key(|(_, base)| *base);
-    assert_eq!(bases.len(), 8, "{bases:?}");
+    let bases = bases();
+    assert!(bases.len() >= 13, "{bases:?}");
     for pair in bases.windows(2) {
-        let [(one, low), (two, high)] = pair else { continue };
-        assert!(high - low > 256 * 1001, "{one} and {two}");
+        let [(low, one), (high, two)] = pair else { continue };
+        assert!(high - low > OF_A_STREAM * 1001, "{one} and {two}");
     }
-    assert!(bases.iter().all(|(_, base)| base + 256 * 1001 < i64::from(i32::MAX)), "seeds do not wrap");
+    let greatest = bases.last().map_or(0, |(base, _)| *base);
+    assert!(greatest + OF_A_STREAM * 1001 < i64::from(i32::MAX), "seeds do not wrap");
 }
