@@ -101,7 +101,8 @@ fn normals_are_blended_as_their_sources_say() {
     };
     let whiteout = |b: V, d: V| unit([b[0] + d[0], b[1] + d[1], b[2] * d[2]]);
     let udn = |b: V, d: V| unit([b[0] + d[0], b[1] + d[1], b[2]]);
-    let modes: [(&str, fn(V, V) -> V); 3] = [("reoriented", turned), ("whiteout", whiteout), ("udn", udn)];
+    type Mode = (&'static str, fn(V, V) -> V);
+    let modes: [Mode; 3] = [("reoriented", turned), ("whiteout", whiteout), ("udn", udn)];
     for (mode, of) in modes {
         for ((b, d), found) in bases.iter().zip(&details).zip(by_mode(mode)) {
             assert!(off(found, of(*b, *d)) < 1e-5, "{mode}: {d:?} on {b:?} is {found:?}");
