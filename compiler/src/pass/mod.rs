@@ -1,6 +1,7 @@
 //! Passes: each a function from graph to graph (or from operation to simpler operation), one file
 //! or folder each. They follow arena order, take time in proportion to the graph and never recurse.
 
+mod arrange;
 pub mod differentiate;
 mod finished;
 pub mod fold_constants;
@@ -28,6 +29,7 @@ pub fn run(graph: Graph, finished: &Finished, gradients: Gradients) -> Graph {
     // Before hoisting, which takes levels out of loops.
     let graph = share_level::run(graph);
     let graph = hoist::run(graph);
-    // Last: all of them leave things behind that nobody reads.
-    finished::settled(remove_dead::run(graph))
+    // Behind all of them, which leave things that nobody reads.
+    let graph = remove_dead::run(graph);
+    finished::settled(arrange::run(graph))
 }
