@@ -45,10 +45,12 @@ const LISTED: &[&str] = &[
     "examples/landscape.tex:landscape::flat, color",
     "examples/signboard.tex:signboard::flat, color",
     "examples/stamps.tex:stamps::ground, color",
+    "examples/terrain.tex:terrain::flat, color",
     "examples/terrain.tex:terrain::ground, color",
     "tests/golden/bakes.tex:bakes::flat, color",
     "tests/golden/bakes.tex:bakes::ground, color",
     "tests/golden/sampled.tex:sampled::ground, color",
+    "tests/golden/tiles.tex:tiles::ground, color",
     "tests/golden/tiling_far.tex:tiling_far::ground, color",
 ];
 

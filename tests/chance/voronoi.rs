@@ -52,7 +52,8 @@ impl Scatter {
         let draw = hash(cell, 1_668_246_636 + 256 * k);
         let mut way = [0.0; 3];
         for axis in 0..self.dimensions {
-            way[axis] = cell[axis] as f32 + 0.5 + self.jitter * (draw[axis] - 0.5) - p[axis];
+            let place = 0.5 + f64::from(self.jitter * (draw[axis] - 0.5));
+            way[axis] = (f64::from(cell[axis]) + place - f64::from(p[axis])) as f32;
         }
         way
     }

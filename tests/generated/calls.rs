@@ -15,6 +15,9 @@ const MOST_STEPS: u32 = 2_000;
 /// Inputs of library nodes that refuse constants beyond a bound, and the greatest each takes.
 const BOUNDED: &[(&str, &str, usize)] = &[("transition_tile", "families", 4)];
 
+/// Nodes of the library that look at many cells.
+const LONG: &[&str] = &["voronoi", "worley", "granite", "bomb"];
+
 /// One output of one thing to call.
 type Candidate = (Callable, usize);
 
@@ -282,7 +285,8 @@ fn node_call(library: &Library, module: usize, item: usize) -> Option<Callable> 
     let module = library.modules().get(module)?;
     let ItemKind::Node(node) = &module.tree.items.get(item)?.kind else { return None };
     let outputs = node.outputs.iter().map(|field| Some((field.name.text.to_string(), value(&field.ty)?)));
-    head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?)
+    let made = head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?)?;
+    Some(Callable { overloaded: library.callables(&node.name.text).len() > 1, ..made })
 }
 
 /// What a library node reads besides its arguments, and how long its folds are, is not looked up:
@@ -293,7 +297,9 @@ fn head(
     inputs: &[syntax::Input],
     outputs: Vec<(String, Ty)>,
 ) -> Option<Callable> {
-    let inputs = inputs.iter().map(|input| {
+    // What has to be a whole number where another input is given keeps its default.
+    let free = inputs.iter().filter(|input| input.name.text.as_str() != "lacunarity");
+    let inputs = free.map(|input| {
         let takes = takes(&input.ty)?;
         Some(Input { name: input.name.text.to_string(), takes, optional: input.default.is_some() })
     });
@@ -306,7 +312,7 @@ fn head(
         overloaded: false,
         method: true,
         explicit: true,
-        steps: 128,
+        steps: if LONG.contains(&name) { 8192 } else { 128 },
         library: true,
         widest: 3,
     })
