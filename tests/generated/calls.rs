@@ -285,8 +285,7 @@ fn node_call(library: &Library, module: usize, item: usize) -> Option<Callable> 
     let module = library.modules().get(module)?;
     let ItemKind::Node(node) = &module.tree.items.get(item)?.kind else { return None };
     let outputs = node.outputs.iter().map(|field| Some((field.name.text.to_string(), value(&field.ty)?)));
-    let made = head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?)?;
-    Some(Callable { overloaded: library.callables(&node.name.text).len() > 1, ..made })
+    head(&node.name.text, &node.dims, &node.inputs, outputs.collect::<Option<_>>()?)
 }
 
 /// What a library node reads besides its arguments, and how long its folds are, is not looked up:
@@ -297,8 +296,9 @@ fn head(
     inputs: &[syntax::Input],
     outputs: Vec<(String, Ty)>,
 ) -> Option<Callable> {
-    // What has to be a whole number where another input is given keeps its default.
-    let free = inputs.iter().filter(|input| input.name.text.as_str() != "lacunarity");
+    // With a period a lacunarity has to be a whole number: the one or the other.
+    let has_lacunarity = inputs.iter().any(|input| input.name.text.as_str() == "lacunarity");
+    let free = inputs.iter().take_while(|input| !has_lacunarity || input.name.text.as_str() != "period");
     let inputs = free.map(|input| {
         let takes = takes(&input.ty)?;
         Some(Input { name: input.name.text.to_string(), takes, optional: input.default.is_some() })
