@@ -1,6 +1,7 @@
 //! No seam: the level of detail that is read does not change across the borders of cells, for every
 //! graph of the quality bench, from above and in perspective, on the CPU and on the GPU.
 //!
+//! Each graph is evaluated once a pixel: `oversampled` takes the mean of four such evaluations.
 //! Every picture gets levels of one colour each, so what a pixel shows is the level it read. The step
 //! from a pixel to its neighbour in another cell is then no greater than the steps inside cells nearby,
 //! or, where the view brings the cells closer, than that of the level which the continuous place asks
@@ -89,7 +90,8 @@ fn source(graph: &str) -> Result<String, Failed> {
     Ok(source
         .replace("../../../../", &format!("{}/", root.display()))
         .replace("mix(0.2, 0.35, random.w)", "0.25")
-        .replace("clamp(footprint(uv) - 1.0, 0.0, 1.0)", "0.0"))
+        .replace(", anisotropy: 8", "")
+        .replace("clamp(footprint(p) - 1.0, 0.0, 1.0)", "0.0"))
 }
 
 fn has_no_seam(gpu: Option<&Gpu>, source: &str, is_plane: bool) -> Result<(), Failed> {
@@ -98,7 +100,7 @@ fn has_no_seam(gpu: Option<&Gpu>, source: &str, is_plane: bool) -> Result<(), Fa
     let mut crossed = 0;
     for pixels in PIXELS_A_CELL {
         let plane = is_plane.then_some(Plane { repeat: (f64::from(SIDE) / pixels) as f32, aspect: 1.0 });
-        let mut made = loaded(folder.path(), source, "t", plane)?;
+        let mut made = loaded(folder.path(), source, "once", plane)?;
         flatten(&mut made);
         let levels = draw(gpu, &made, &view(pixels, is_plane))?;
         let cells = draw(None, &loaded(folder.path(), source, "borders", plane)?, &view(pixels, is_plane))?;

@@ -28,7 +28,7 @@ pub fn bound(name: &str, arguments: &[Constant], value: &Constant, i: usize) -> 
     match name {
         // Choices and steps among their arguments.
         "-x" | "abs" | "sign" | "min" | "max" | "clamp" | "step" | "floor" | "ceil" | "round" | "([i])"
-        | "(choose)" => LEAST,
+        | "(choose)" | "narrow" => LEAST,
         // 24 bits of an int, times a power of two.
         "hash" | "(hash4)" => 0.0,
         // Correctly rounded.
