@@ -30,10 +30,19 @@ impl Prepared {
     }
 }
 
+/// Files of which programs call few nodes, each seldom: to make them all ahead, in all widths, would
+/// take longer than any program gains.
+const SELDOM: [&str; 8] =
+    ["bombing", "cells", "color", "coordinates", "motifs", "shapes", "stone", "surface"];
+
+fn is_common(path: &str) -> bool {
+    !SELDOM.iter().any(|name| path.strip_suffix(".tex").is_some_and(|path| path.ends_with(name)))
+}
+
 /// What of a library can be made ahead: nodes by the calls that they are made for, and the functions
 /// of all of them, each once.
 pub fn prepare(library: &Library) -> (Vec<(Key, Prepared)>, Vec<Function>) {
-    let modules = library.modules().iter().enumerate();
+    let modules = library.modules().iter().enumerate().filter(|(_, module)| is_common(&module.path));
     let items =
         modules.flat_map(|(i, module)| module.tree.items.iter().enumerate().map(move |item| (i, item)));
     let nodes = items.filter_map(|(module, (i, item))| Some((module, i, super::globals::node_of(item)?)));
