@@ -1,17 +1,21 @@
-//! What is made of the library's nodes when it is loaded, before any program calls them: checked,
-//! through all passes, and lowered.
+//! What is made of the library's nodes before a program calls them: checked, through all passes, and
+//! lowered.
 //!
 //! A program takes over what it uses unchanged, and makes all else itself; both are the same, byte
 //! for byte. A function says by its [`Origin`] what it is; whoever changes one, makes a new one,
 //! which has none.
 
+use crate::check::{Key, Prepared};
 use crate::graph::{Builder, Function, FunctionId, Graph, Origin};
 use crate::lower::Objects;
 use crate::pass::{Finished, inline, merge_samples};
+use rustc_hash::FxHashMap;
 
 /// Functions made ahead.
 #[derive(Clone, Debug, Default)]
 pub struct Ahead {
+    /// Nodes by the calls that they are made for.
+    pub prepared: FxHashMap<Key, Prepared>,
     /// After checking, single expressions taken over; callees by their place in this list.
     pub checked: Vec<Function>,
     /// After all passes.
@@ -21,9 +25,9 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Of checked functions, `nodes` among them those that programs call.
-    pub fn of(functions: Vec<Function>, nodes: impl Iterator<Item = FunctionId>) -> Ahead {
-        let nodes: Vec<FunctionId> = nodes.collect();
+    /// Of nodes and the functions that they are made of.
+    pub fn of(prepared: Vec<(Key, Prepared)>, functions: Vec<Function>) -> Ahead {
+        let nodes: Vec<FunctionId> = prepared.iter().map(|(_, prepared)| prepared.node()).collect();
         let mut graph = Graph { functions, ..Graph::default() };
         graph.functions.push(caller(&graph.functions, &nodes));
         let functions = inline::ahead(&graph);
@@ -36,7 +40,7 @@ impl Ahead {
         let objects = Objects::of(&graph_after);
         let mut checked = graph.functions;
         checked.pop();
-        Ahead { checked, finished, objects }
+        Ahead { prepared: prepared.into_iter().collect(), checked, finished, objects }
     }
 }
 

@@ -37,6 +37,7 @@ pub use manifest::{Form, Gradients, Manifest};
 pub use plane::Plane;
 pub use profile::Profile;
 
+use crate::ahead::Ahead;
 use crate::check::Checker;
 use crate::diagnostic::{Place, limits};
 use crate::graph::{Graph, PassGraph};
@@ -152,10 +153,11 @@ pub fn compile(
 ) -> Result<Compiled, Failure> {
     let modules = load(library, main, loader)?;
     let fail = |diagnostics| Failure { sources: modules.sources.clone(), diagnostics };
-    let Planned { graphs, manifest } = planned(library, &modules, options).map_err(fail)?;
+    let ahead = library.ahead();
+    let Planned { graphs, manifest } = planned(library, &ahead, &modules, options).map_err(fail)?;
     let mut passes = Vec::new();
     for (i, PassGraph { graph, .. }) in graphs.into_iter().enumerate() {
-        let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i), &library.ahead().objects);
+        let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i), &ahead.objects);
         let wgsl = emit::wgsl(&lowered).map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
         passes.push(Pass { graph, wgsl });
     }
@@ -168,7 +170,8 @@ pub fn compile(
 /// Every error, in source order.
 pub fn check(library: &Library, main: &str, loader: &dyn Loader) -> Result<Checked, Failure> {
     let modules = load(library, main, loader)?;
-    let mut checker = Checker::new(library, &modules.modules);
+    let ahead = Ahead::default();
+    let mut checker = Checker::new(library, &ahead, &modules.modules);
     checker.declare();
     checker.everything();
     let warnings = checker.take_warnings();
@@ -211,11 +214,12 @@ pub fn check_profile(
 ) -> Result<(), Failure> {
     let modules = load(library, main, loader)?;
     let tree = modules.modules.last().map(|module| &module.tree);
+    let ahead = library.ahead();
     let mut diagnostics = Vec::new();
     for texture in tree.map(|tree| check::textures(tree)).unwrap_or_default() {
         let texture = Some(texture.to_owned());
         let options = Options { texture, form: Form::Library, profile, ..Options::default() };
-        diagnostics.extend(planned(library, &modules, &options).err().unwrap_or_default());
+        diagnostics.extend(planned(library, &ahead, &modules, &options).err().unwrap_or_default());
     }
     diagnostics.sort_by_key(|diagnostic| (diagnostic.place, diagnostic.code));
     // Textures share bakes, and with them their errors.
@@ -232,13 +236,17 @@ struct Planned {
 }
 
 /// All of compiling but the shaders.
-fn planned(library: &Library, modules: &Modules, options: &Options) -> Result<Planned, Vec<Diagnostic>> {
-    let checked = checked(library, modules, options);
+fn planned(
+    library: &Library,
+    ahead: &Ahead,
+    modules: &Modules,
+    options: &Options,
+) -> Result<Planned, Vec<Diagnostic>> {
+    let checked = checked(library, ahead, modules, options);
     let Graphs { graphs, label, period, head } = checked.map_err(|found| advice::advise(modules, found))?;
-    let finished = &library.ahead().finished;
     let optimised = graphs.into_iter().map(|PassGraph { graph, bake }| {
         let gradients = if bake.is_some() { Gradients::Derive } else { options.gradients };
-        PassGraph { graph: pass::run(graph, finished, gradients), bake }
+        PassGraph { graph: pass::run(graph, &ahead.finished, gradients), bake }
     });
     let graphs: Vec<PassGraph> = optimised.collect();
     // In perspective nothing repeats.
@@ -264,10 +272,16 @@ struct Graphs {
 }
 
 /// The graphs of the chosen texture and the bakes before it.
-fn checked(library: &Library, modules: &Modules, options: &Options) -> Result<Graphs, Vec<Diagnostic>> {
-    let mut checker = Checker::new(library, &modules.modules);
+fn checked(
+    library: &Library,
+    ahead: &Ahead,
+    modules: &Modules,
+    options: &Options,
+) -> Result<Graphs, Vec<Diagnostic>> {
+    let mut checker = Checker::new(library, ahead, &modules.modules);
     checker.declare();
     let key = checker.texture(options.texture.as_deref());
+    library.note(checker.called());
     let (true, Some(key)) = (checker.is_fine(), key) else {
         let diagnostics = checker.into_diagnostics();
         let silent = diagnostics.is_empty();

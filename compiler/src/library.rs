@@ -1,13 +1,15 @@
-//! The standard library: `std/*.tex`, parsed once, its nodes made as most programs call them, and
-//! shared by every compilation.
+//! The standard library: `std/*.tex`, parsed once and shared by every compilation. A process that
+//! compiles many programs gets the nodes of the files that they call into made ahead, as most
+//! programs call them; one that compiles few makes only what these call, which is less.
 
 use crate::ahead::Ahead;
-use crate::check::{self, Key, Known, Prepared};
+use crate::check::{self, Known};
 use crate::intrinsic::Intrinsic;
 use crate::module::{Module, Source, Sources};
 use crate::resource::KINDS;
 use rustc_hash::FxHashMap;
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, PoisonError};
 use texgraph_grammar::syntax::{ItemKind, Signature};
 
 /// The files, one per technique.
@@ -60,10 +62,24 @@ pub struct Library {
     signatures: Vec<Signature>,
     /// What is known of the inputs of each.
     known: Vec<Vec<Known>>,
-    /// Nodes as most programs call them.
-    prepared: FxHashMap<Key, Prepared>,
-    /// What later stages make of these.
-    ahead: Ahead,
+    /// What is made before a program calls it.
+    ahead: Arc<Mutex<Progress>>,
+}
+
+/// Programs that call into a file before its nodes are made ahead: by then they have spent about as
+/// long on making their own.
+const PATIENCE: u32 = 32;
+
+/// How much of a library is made ahead.
+#[derive(Debug, Default)]
+struct Progress {
+    /// The modules that programs have called into.
+    called: BTreeSet<usize>,
+    /// How many programs have missed some of them.
+    missed: u32,
+    /// Those whose nodes are made, and what was made of them.
+    made: BTreeSet<usize>,
+    ahead: Arc<Ahead>,
 }
 
 impl Library {
@@ -91,16 +107,12 @@ impl Library {
             callables: FxHashMap::default(),
             signatures: Vec::new(),
             known: Vec::new(),
-            prepared: FxHashMap::default(),
-            ahead: Ahead::default(),
+            ahead: Arc::default(),
         };
         for (path, text) in files {
             library.add_file(path, text)?;
         }
         library.add_tables()?;
-        let (prepared, functions) = check::prepare(&library);
-        library.ahead = Ahead::of(functions, prepared.iter().map(|(_, prepared)| prepared.node()));
-        library.prepared = prepared.into_iter().collect();
         Ok(library)
     }
 
@@ -160,14 +172,24 @@ impl Library {
         &self.modules
     }
 
-    /// The node that was made for this key, if it was.
-    pub(crate) fn prepared(&self, key: &Key) -> Option<&Prepared> {
-        self.prepared.get(key)
+    /// What is made of the nodes that programs before this one called, and of those beside them.
+    /// The shaders are the same with and without it.
+    pub(crate) fn ahead(&self) -> Arc<Ahead> {
+        let mut progress = self.ahead.lock().unwrap_or_else(PoisonError::into_inner);
+        if progress.missed >= PATIENCE {
+            progress.missed = 0;
+            progress.made = progress.called.clone();
+            progress.ahead = Arc::new(check::ahead(self, &progress.made));
+        }
+        Arc::clone(&progress.ahead)
     }
 
-    /// What is made of its nodes before any program calls them.
-    pub(crate) fn ahead(&self) -> &Ahead {
-        &self.ahead
+    /// Notes the modules that a program has called into.
+    pub(crate) fn note(&self, called: &BTreeSet<usize>) {
+        let mut progress = self.ahead.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut called: BTreeSet<usize> = called.range(..self.modules.len()).copied().collect();
+        progress.missed += u32::from(!called.is_subset(&progress.made));
+        progress.called.append(&mut called);
     }
 
     /// What a name may mean, in order of preference.
@@ -239,19 +261,23 @@ texture mixture(uv: vec2) -> (color: color) {
 
     #[test]
     fn nodes_made_ahead_are_those_made_in_place() {
-        let library = Library::standard().unwrap();
-        assert!(!library.prepared.is_empty());
-        let plain = Library { prepared: FxHashMap::default(), ahead: Ahead::default(), ..library.clone() };
+        let all = Library::standard().unwrap();
+        (0..PATIENCE).for_each(|_| all.note(&(0..all.modules().len()).collect()));
+        let ahead = all.ahead();
+        assert!(!ahead.prepared.is_empty());
+        assert!(!ahead.prepared.keys().any(|key| key.is_passed_functions()));
         let files = files();
         for file in files.keys() {
-            for texture in textures(&library, file, &files).unwrap() {
+            for texture in textures(&all, file, &files).unwrap() {
                 for form in [Form::Complete, Form::Library, Form::Functions] {
                     let options = Options { texture: Some(texture.clone()), form, ..Options::default() };
-                    let [ahead, in_place] = [&library, &plain].map(|library| {
+                    let compiled = |library: &Library| {
                         let compiled = compile(library, file, &files, &options).unwrap();
                         compiled.program.passes.into_iter().map(|pass| pass.wgsl).collect::<Vec<_>>()
-                    });
-                    assert_eq!(ahead, in_place, "{file}: {texture}");
+                    };
+                    let library = Library { ahead: Arc::default(), ..all.clone() };
+                    let in_place = compiled(&library);
+                    assert_eq!(compiled(&all), in_place, "{file}: {texture}, all made ahead");
                 }
             }
         }

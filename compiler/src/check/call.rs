@@ -39,12 +39,12 @@ impl<'a> Checker<'a> {
     pub(super) fn call(&mut self, f: &mut Frame<'a>, call: &'a Call, span: Span) -> Wire {
         let place = self.place(f, span);
         let mut given = Arguments::new();
-        self.evaluate(f, &call.arguments, &mut given);
+        let candidates = self.callables_of(f.module, &call.name.text);
+        self.evaluate(f, &candidates, &call.arguments, &mut given);
         if let Some(Wire::Node(node)) = f.lookup(&call.name.text) {
             let callee = self.callee(f, call);
             return self.call_passed(f, &node, callee, &given, place);
         }
-        let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty()
             && let Some(wire) = self.special(f, call, &given, place)
         {
@@ -70,7 +70,8 @@ impl<'a> Checker<'a> {
         let place = self.place(f, span);
         let mut given = Arguments::new();
         given.push(Given { name: None, wire: base, place: base_place, expr: None });
-        self.evaluate(f, &call.arguments, &mut given);
+        let candidates = self.callables_of(f.module, &call.name.text);
+        self.evaluate(f, &candidates, &call.arguments, &mut given);
         if let Some(view) = view_of(&given[0].wire)
             && let Some(wire) = self.view_method(f, view, call, &given[1..], place)
         {
@@ -85,7 +86,6 @@ impl<'a> Checker<'a> {
         if let Some(Wire::Node(node)) = f.lookup(&call.name.text) {
             return self.call_passed(f, &node, callee, &given, place);
         }
-        let candidates = self.callables_of(f.module, &call.name.text);
         if candidates.is_empty() {
             if let Some(wire) = self.special(f, call, &given, place) {
                 return wire;
@@ -129,8 +129,8 @@ impl<'a> Checker<'a> {
     ) -> Wire {
         let place = self.place(f, span);
         let mut given = Arguments::new();
-        self.evaluate(f, &call.arguments, &mut given);
         let candidates = self.own_callables(module, &call.name.text).to_vec();
+        self.evaluate(f, &candidates, &call.arguments, &mut given);
         if candidates.is_empty() {
             let at = self.place(f, call.name.span);
             if self.globals[module].contains_key(call.name.text.as_str()) {
@@ -144,11 +144,40 @@ impl<'a> Checker<'a> {
         self.call_one_of(f, &candidates, callee, &given, place)
     }
 
+    /// Whether an input of this name, in each of the callables that have one, is a choice with
+    /// this word: a value of the same name isn't meant then.
+    pub(super) fn is_choice(&self, candidates: &[Callable], input: &str, word: &str) -> bool {
+        let heads = candidates.iter().filter_map(|callable| self.head(*callable));
+        let mut inputs = heads.flat_map(|head| head.inputs).filter(|i| i.name.text == input).peekable();
+        inputs.peek().is_some() && inputs.all(|input| chooses(input, word))
+    }
+
+    /// The same of a call whose file and receiver aren't known.
+    pub(super) fn is_choice_anywhere(&self, call: &str, input: &str, word: &str) -> bool {
+        let own = self.callables.iter().filter_map(|callables| callables.get(call)).flatten();
+        let all: Vec<Callable> = self.library.callables(call).iter().chain(own).copied().collect();
+        self.is_choice(&all, input, word)
+    }
+
     /// Adds what arguments are worth.
-    fn evaluate(&mut self, f: &mut Frame<'a>, arguments: &'a [Argument], given: &mut Arguments<'a>) {
+    fn evaluate(
+        &mut self,
+        f: &mut Frame<'a>,
+        callables: &[Callable],
+        arguments: &'a [Argument],
+        given: &mut Arguments<'a>,
+    ) {
         for Argument { name, value } in arguments {
-            let wire = self.argument_wire(f, value);
             let place = self.place(f, value.span);
+            let wire = match (name, &value.kind) {
+                (Some(input), ExprKind::Name(word))
+                    if f.bound.contains_key(word.as_str())
+                        && self.is_choice(callables, &input.text, word) =>
+                {
+                    Wire::word(word, place)
+                }
+                _ => self.argument_wire(f, value),
+            };
             given.push(Given { name: name.as_ref(), wire, place, expr: Some(value) });
         }
     }
@@ -281,13 +310,12 @@ impl<'a> Checker<'a> {
     fn words(&mut self, f: &mut Frame<'a>, candidates: &[Callable], given: &[Given<'a>]) {
         let inputs =
             candidates.iter().filter_map(|callable| self.head(*callable)).flat_map(|head| head.inputs);
-        let chooses = |word: &str, input: &Input| matches!(&input.ty.kind, TypeKind::Choice(words) if words.iter().any(|known| known.text == word));
         let inputs: Vec<&'a Input> = inputs.collect();
         let takes_nodes = inputs.iter().any(|input| matches!(input.ty.kind, TypeKind::Node { .. }));
         for argument in given {
             // The name of a node may be right.
             if let Wire::Word(word) = &argument.wire
-                && !inputs.iter().any(|input| chooses(&word.text, input))
+                && !inputs.iter().any(|input| chooses(input, &word.text))
                 && (!takes_nodes || self.callables_of(f.module, &word.text).is_empty())
             {
                 self.unknown_value(f, &word.text, word.place);
@@ -443,6 +471,11 @@ impl<'a> Checker<'a> {
 /// What `special` knows, for suggestions.
 const SPECIAL: &[&str] =
     &["float", "vec2", "vec3", "vec4", "int", "ivec2", "ivec3", "ivec4", "dx", "dy", "sample", "texel"];
+
+/// Whether an input is a choice with this word.
+fn chooses(input: &Input, word: &str) -> bool {
+    matches!(&input.ty.kind, TypeKind::Choice(words) if words.iter().any(|known| known.text == word))
+}
 
 /// What of an argument is part of the function; the rest joins the values that it is called with.
 fn key_of(f: &Frame<'_>, wire: Wire, values: &mut Vec<Value>) -> ArgumentKey {

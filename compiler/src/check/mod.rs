@@ -37,10 +37,11 @@ mod view;
 mod wire;
 
 pub use head::{Known, known, known_of_items};
-pub use prepared::{Prepared, prepare};
+pub use prepared::{Prepared, ahead};
 pub use texture::textures;
 pub use wire::Key;
 
+use crate::ahead::Ahead;
 use crate::diagnostic::{Diagnostic, Place, limits, names};
 use crate::graph::{
     Builder, Constant, Function, FunctionId, Graph, Param, ParamId, PassGraph, ResourceView, Type, ViewId,
@@ -52,6 +53,7 @@ use frame::{Frame, Step, Target};
 use globals::Global;
 use operator::Overload;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 use texgraph_grammar::syntax::{BinaryOperator, Input, ItemKind, Node, Span};
 use types::Declared;
@@ -68,6 +70,10 @@ enum Outcome {
 /// Everything known while checking a program.
 pub struct Checker<'a> {
     library: &'a Library,
+    /// What the library made before.
+    ahead: &'a Ahead,
+    /// The modules called into.
+    called: BTreeSet<usize>,
     modules: &'a [Module],
     globals: Vec<FxHashMap<String, Global>>,
     /// The nodes and textures of each file by name.
@@ -114,10 +120,12 @@ struct ResourceFields {
 }
 
 impl<'a> Checker<'a> {
-    /// Over the library's and a user's modules.
-    pub fn new(library: &'a Library, modules: &'a [Module]) -> Checker<'a> {
+    /// Over the library's and a user's modules; what is made `ahead` is taken over.
+    pub fn new(library: &'a Library, ahead: &'a Ahead, modules: &'a [Module]) -> Checker<'a> {
         Checker {
             library,
+            ahead,
+            called: BTreeSet::new(),
             modules,
             globals: vec![FxHashMap::default(); modules.len()],
             callables: globals::all_callables(modules, library.modules().len()),
@@ -143,6 +151,11 @@ impl<'a> Checker<'a> {
             overfull: false,
             full: false,
         }
+    }
+
+    /// The modules that were called into, those of the library among them.
+    pub fn called(&self) -> &BTreeSet<usize> {
+        &self.called
     }
 
     /// All warnings so far, in source order, each once.
@@ -246,6 +259,7 @@ impl<'a> Checker<'a> {
     /// A frame for a node that is waited for; none where it can't be made, which is reported.
     fn start(&mut self, stack: &[Frame<'a>], parent: usize, key: &Key, place: Place) -> Option<Frame<'a>> {
         let node = self.node(key.module, key.item)?;
+        self.called.insert(key.module);
         let mut up = Some(parent);
         while let Some(frame) = up.and_then(|i| stack.get(i)) {
             if frame.key.as_ref().is_some_and(|k| (k.module, k.item) == (key.module, key.item)) {
@@ -254,7 +268,7 @@ impl<'a> Checker<'a> {
             }
             up = frame.parent;
         }
-        if let Some(prepared) = self.ahead(key) {
+        if let Some(prepared) = self.made_ahead(key) {
             return Some(Frame { key: Some(key.clone()), prepared: Some(prepared), ..Frame::empty() });
         }
         self.started += 1;

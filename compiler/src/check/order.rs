@@ -1,7 +1,9 @@
 //! Which wire needs which: free names of expressions, and statements in an order that works.
 
 use rustc_hash::{FxHashMap, FxHashSet};
-use texgraph_grammar::syntax::{Body, Expr, ExprKind, Fold, Name, Node, Pattern, Postfix, Span, Statement};
+use texgraph_grammar::syntax::{
+    Argument, Body, Call, Expr, ExprKind, Fold, Name, Node, Pattern, Postfix, Span, Statement,
+};
 
 /// The names that an expression takes from outside.
 #[derive(Default, Debug)]
@@ -12,8 +14,19 @@ pub struct Free<'a> {
     pub places: Vec<Span>,
     /// Called.
     pub calls: Vec<&'a str>,
+    /// Of the values, those that an input may take for a choice instead.
+    words: Vec<Word<'a>>,
     /// Names bound around the place of the walk, with how many times.
     bound: FxHashMap<&'a str, u32>,
+}
+
+/// A bare name given to a named input.
+#[derive(Debug)]
+struct Word<'a> {
+    /// Which of the values it is.
+    value: usize,
+    call: &'a str,
+    input: &'a str,
 }
 
 impl<'a> Free<'a> {
@@ -29,7 +42,18 @@ impl<'a> Free<'a> {
         self.values.clear();
         self.places.clear();
         self.calls.clear();
+        self.words.clear();
         self.expr(expr);
+    }
+
+    /// The values less those that are choices: `is_choice` is asked about a call, the name of an
+    /// input and a word.
+    pub fn reads(&self, is_choice: impl Fn(&str, &str, &str) -> bool) -> impl Iterator<Item = &'a str> {
+        let mut words = self.words.iter().peekable();
+        self.values.iter().enumerate().filter_map(move |(i, name)| {
+            let word = words.next_if(|word| word.value == i);
+            word.is_none_or(|word| !is_choice(word.call, word.input, name)).then_some(*name)
+        })
     }
 
     /// Of a further expression too.
@@ -89,10 +113,7 @@ impl<'a> Free<'a> {
         match &expr.kind {
             ExprKind::Name(name) => self.name(name, expr.span),
             ExprKind::Paren(inner) => self.expr(inner),
-            ExprKind::Call(call) => {
-                self.calls.push(&call.name.text);
-                call.arguments.iter().for_each(|argument| self.expr(&argument.value));
-            }
+            ExprKind::Call(call) => self.call(call),
             ExprKind::Postfix { base, links } => {
                 self.expr(base);
                 links.iter().for_each(|link| self.link(link));
@@ -124,11 +145,19 @@ impl<'a> Free<'a> {
     fn link(&mut self, link: &'a Postfix) {
         match link {
             Postfix::Field(_) => {}
-            Postfix::Method(call, _) => {
-                self.calls.push(&call.name.text);
-                call.arguments.iter().for_each(|argument| self.expr(&argument.value));
-            }
+            Postfix::Method(call, _) => self.call(call),
             Postfix::Index(index, _) => self.expr(index),
+        }
+    }
+
+    fn call(&mut self, call: &'a Call) {
+        self.calls.push(&call.name.text);
+        for Argument { name, value } in &call.arguments {
+            let before = self.values.len();
+            self.expr(value);
+            if let (Some(input), ExprKind::Name(_), true) = (name, &value.kind, before < self.values.len()) {
+                self.words.push(Word { value: before, call: &call.name.text, input: &input.text });
+            }
         }
     }
 }

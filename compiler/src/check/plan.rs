@@ -144,7 +144,10 @@ impl<'a> Checker<'a> {
                 // A node may be passed by its bare name.
                 reach.values(free.calls.iter().chain(&free.values).copied().collect())
             });
-            let names = free.values.iter().chain(through.iter().flatten());
+            let own = free.reads(|call, input, word| {
+                f.bound.contains_key(word) && self.is_choice_anywhere(call, input, word)
+            });
+            let names = own.chain(through.into_iter().flatten());
             needs.push(names.filter_map(|name| f.bound.get(name).copied()));
         }
         let (order, rings) = order::sort(&needs);

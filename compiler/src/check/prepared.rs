@@ -1,4 +1,4 @@
-//! The library's nodes, made when it is loaded: each as a call makes it whose arguments are known
+//! The library's nodes, made before a program calls them: each as a call makes it whose arguments are known
 //! only when a shader runs, and whose other inputs keep their defaults. A program takes over what it
 //! calls so, in place of making it once more.
 
@@ -8,9 +8,12 @@ use super::node::open_input;
 use super::types::{self, Declared, Dims};
 use super::wire::{ArgumentKey, Key};
 use super::{Checker, Frame, Outcome};
+use crate::ahead::Ahead;
 use crate::diagnostic::{Place, limits};
 use crate::graph::{Function, FunctionId};
 use crate::library::{Callable, Library};
+use rustc_hash::FxHashSet;
+use std::collections::BTreeSet;
 use texgraph_grammar::syntax::Node;
 
 /// A node made ahead; functions by their place in the library's list.
@@ -30,19 +33,9 @@ impl Prepared {
     }
 }
 
-/// Files of which programs call few nodes, each seldom: to make them all ahead, in all widths, would
-/// take longer than any program gains.
-const SELDOM: [&str; 8] =
-    ["bombing", "cells", "color", "coordinates", "motifs", "shapes", "stone", "surface"];
-
-fn is_common(path: &str) -> bool {
-    !SELDOM.iter().any(|name| path.strip_suffix(".tex").is_some_and(|path| path.ends_with(name)))
-}
-
-/// What of a library can be made ahead: nodes by the calls that they are made for, and the functions
-/// of all of them, each once.
-pub fn prepare(library: &Library) -> (Vec<(Key, Prepared)>, Vec<Function>) {
-    let modules = library.modules().iter().enumerate().filter(|(_, module)| is_common(&module.path));
+/// What of these modules of a library can be made ahead.
+pub fn ahead(library: &Library, modules: &BTreeSet<usize>) -> Ahead {
+    let modules = modules.iter().filter_map(|i| Some((*i, library.modules().get(*i)?)));
     let items =
         modules.flat_map(|(i, module)| module.tree.items.iter().enumerate().map(move |item| (i, item)));
     let nodes = items.filter_map(|(module, (i, item))| Some((module, i, super::globals::node_of(item)?)));
@@ -50,13 +43,13 @@ pub fn prepare(library: &Library) -> (Vec<(Key, Prepared)>, Vec<Function>) {
         let widths = if node.dims.is_empty() { 1..=1 } else { 1..=4 };
         widths.map(move |width| (module, item, node, width))
     });
-    let mut all = Checker::new(library, library.modules());
-    let made = calls.filter_map(|(module, item, node, width)| {
-        let made = Checker::new(library, library.modules()).made_alone(module, item, node, width)?;
-        Some(all.collect(made))
-    });
-    let made = made.collect();
-    (made, all.functions)
+    let nothing = Ahead::default();
+    let checker = || Checker::new(library, &nothing, library.modules());
+    let mut all = checker();
+    let made =
+        calls.filter_map(|(module, item, node, width)| checker().made_alone(module, item, node, width));
+    let made = made.collect::<Vec<Alone>>().into_iter().flat_map(|alone| all.collect(alone)).collect();
+    Ahead::of(made, all.functions)
 }
 
 impl<'a> Checker<'a> {
@@ -65,20 +58,24 @@ impl<'a> Checker<'a> {
         self.declare();
         let is_alone = self.functions.is_empty() && self.params.is_empty() && self.resources.is_empty();
         let key = self.open_call(module, item, node, width).filter(|_| is_alone)?;
-        let frame = self.frame(node, key.clone(), None);
+        let frame = self.frame(node, key, None);
         self.run(frame);
-        let nodes = self.made.into_iter().map(|(key, outcome)| match outcome {
-            Outcome::Made(id) => Some((key, id)),
-            Outcome::Failed => None,
-        });
-        let nodes = nodes.collect::<Option<Vec<_>>>()?;
+        let mut nodes = Vec::with_capacity(self.made.len());
+        for (key, outcome) in self.made {
+            match outcome {
+                // Functions of another program are not those that it was passed here.
+                Outcome::Made(_) if key.is_passed_functions() => {}
+                Outcome::Made(id) => nodes.push((key, id)),
+                Outcome::Failed => return None,
+            }
+        }
         let is_free = self.diagnostics.is_empty() && self.budget == limits::MAX_EVALUATION;
-        is_free.then_some(Alone { key, functions: self.functions, nodes })
+        is_free.then_some(Alone { functions: self.functions, nodes })
     }
 
-    /// Puts the functions of a node among those of all.
-    fn collect(&mut self, alone: Alone) -> (Key, Prepared) {
-        let Alone { key, functions, nodes } = alone;
+    /// Puts the functions of a node among those of all: the node, and each that it calls.
+    fn collect(&mut self, alone: Alone) -> Vec<(Key, Prepared)> {
+        let Alone { functions, nodes } = alone;
         let mut ids: Vec<FunctionId> = Vec::with_capacity(functions.len());
         for mut function in functions {
             function.replace_functions(|id| ids[id.0 as usize]);
@@ -86,8 +83,23 @@ impl<'a> Checker<'a> {
         }
         let nodes: Vec<(Key, FunctionId)> =
             nodes.into_iter().map(|(key, id)| (key, ids[id.0 as usize])).collect();
-        let node = nodes.iter().find(|(other, _)| *other == key).map_or(FunctionId(0), |(_, id)| *id);
-        (key, Prepared { functions: ids, nodes, node })
+        let mut all = Vec::with_capacity(nodes.len());
+        ids.sort_unstable();
+        ids.dedup();
+        for (key, node) in &nodes {
+            // What a function uses was made before it.
+            let mut needed: FxHashSet<FunctionId> = [*node].into_iter().collect();
+            for id in ids.iter().rev() {
+                if needed.contains(id) {
+                    needed.extend(self.functions[id.0 as usize].functions());
+                }
+            }
+            let is_needed = |id: &FunctionId| needed.contains(id);
+            let functions = ids.iter().copied().filter(is_needed).collect();
+            let nodes = nodes.iter().filter(|(_, id)| is_needed(id)).cloned().collect();
+            all.push((key.clone(), Prepared { functions, nodes, node: *node }));
+        }
+        all
     }
 
     /// The key of a call that gives what has no default, and gives nothing that is known.
@@ -110,24 +122,31 @@ impl<'a> Checker<'a> {
             given.push(Given { name: Some(&input.name), wire, place, expr: None });
         }
         let head = self.head(Callable::Node(module, item))?;
-        let bound = self.bind_arguments(&mut f, head, None, &given, place)?;
+        let bound = loop {
+            if let Some(bound) = self.bind_arguments(&mut f, head, None, &given, place) {
+                break bound;
+            }
+            // A default may call nodes, which are made first.
+            let (key, _) = f.waiting.pop()?;
+            let frame = self.frame(self.node(key.module, key.item)?, key, None);
+            self.run(frame);
+        };
         self.call_node(&mut f, (module, item, None), bound, place);
         f.waiting.pop().map(|(key, _)| key)
     }
 
     /// The node that was made ahead for a key. Near a limit there is none: making it shows which
     /// node passes the limit.
-    pub(super) fn ahead(&self, key: &Key) -> Option<&'a Prepared> {
-        let library: &'a Library = self.library;
+    pub(super) fn made_ahead(&self, key: &Key) -> Option<&'a Prepared> {
         let is_far = self.started < limits::MAX_NODES / 2 && self.values < limits::MAX_VALUES / 2;
-        library.prepared(key).filter(|_| is_far)
+        self.ahead.prepared.get(key).filter(|_| is_far)
     }
 
     /// Takes over a node that was made ahead, which counts as one that is made.
     pub(super) fn take_over(&mut self, prepared: &Prepared) {
         for ahead in &prepared.functions {
             if !self.taken.contains_key(ahead) {
-                let mut function = self.library.ahead().checked[ahead.0 as usize].clone();
+                let mut function = self.ahead.checked[ahead.0 as usize].clone();
                 function.replace_functions(|id| self.taken.get(&id).copied().unwrap_or(id));
                 let id = self.intern(function);
                 self.taken.insert(*ahead, id);
@@ -144,7 +163,6 @@ impl<'a> Checker<'a> {
 
 /// A node made on its own; functions by their place in its list.
 struct Alone {
-    key: Key,
     functions: Vec<Function>,
     nodes: Vec<(Key, FunctionId)>,
 }

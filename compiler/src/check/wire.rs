@@ -122,3 +122,10 @@ pub struct Key {
     /// A wire of the body that it gives in place of its outputs.
     pub wire: Option<String>,
 }
+
+impl Key {
+    /// Whether functions of the program are among its arguments.
+    pub fn is_passed_functions(&self) -> bool {
+        self.arguments.iter().any(|argument| matches!(argument, ArgumentKey::Node(_)))
+    }
+}

@@ -32,7 +32,7 @@ impl Finished {
     pub fn of(graph: Graph) -> (Graph, Finished) {
         let (graph, variants) = differentiate::with_variants(graph);
         let shapes: Vec<Shape> = graph.functions.iter().map(Shape::of).collect();
-        let graph = hoist::run(share_level::run(graph));
+        let (graph, changed) = hoist::with_changed(share_level::run(graph));
         let (graph, places) = remove_dead::with_places(graph);
         let mut finished = Finished::default();
         for function in &graph.functions {
@@ -40,8 +40,10 @@ impl Finished {
         }
         for MadeOf { function, variant, made, inner } in variants {
             let Some(FunctionId(id)) = places[made.id.0 as usize] else { continue };
-            // A program that reads more of it, or gives it other arguments, needs what was removed.
-            if Shape::of(&graph.functions[id as usize]) == shapes[made.id.0 as usize] {
+            // A program that reads more of it, or gives it other arguments, needs what was removed;
+            // where as much was added the number of inputs is the same, but not what they are.
+            let place = made.id.0 as usize;
+            if !changed[place] && Shape::of(&graph.functions[id as usize]) == shapes[place] {
                 finished.variants.insert((function, variant), Done { id, tangents: made.tangents, inner });
             }
         }

@@ -35,7 +35,14 @@ const MOST_MOVED: usize = 100_000;
 const MOST_INPUTS: usize = 64;
 
 /// Moves work out of folds, and what is the same for a whole draw to the top.
-pub fn run(mut graph: Graph) -> Graph {
+pub fn run(graph: Graph) -> Graph {
+    with_changed(graph).0
+}
+
+/// The same, and which functions take what was moved out of them as further inputs: no longer what
+/// their callers knew.
+pub fn with_changed(mut graph: Graph) -> (Graph, Vec<bool>) {
+    let inputs: Vec<usize> = graph.functions.iter().map(|function| function.inputs.len()).collect();
     let live = Liveness::of(&graph);
     let mut hoisting = Hoisting {
         weights: Weights::of(&graph),
@@ -51,7 +58,10 @@ pub fn run(mut graph: Graph) -> Graph {
         let function = std::mem::take(&mut graph.functions[place]);
         hoisting.function(place, function, &role);
     }
-    Graph { functions: hoisting.functions, ..graph }
+    let functions = hoisting.functions;
+    let changed = functions.iter().zip(inputs).map(|(function, before)| function.inputs.len() != before);
+    let changed = changed.collect();
+    (Graph { functions, ..graph }, changed)
 }
 
 /// How a function is used.
