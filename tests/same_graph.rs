@@ -126,8 +126,11 @@ fn disguised(text: &str, body: &Body, random: &mut Random) -> String {
     let mut statements = Vec::new();
     for statement in &body.statements {
         let copies = if matches!(statement, Statement::Let { .. }) { 2 } else { 1 };
+        // What it binds it can't read: there the name is the word of a choice.
+        let own = bound(statement);
+        let others: Vec<&str> = names.iter().copied().filter(|name| !own.contains(name)).collect();
         for copy in 0..copies {
-            let value = renamed(text, value(statement), &names, random);
+            let value = renamed(text, value(statement), &others, random);
             let targets: Vec<String> = bound(statement).iter().map(|name| named(name, copy)).collect();
             statements.push(match statement {
                 Statement::Let { pattern: Pattern::Name(_), .. } => format!("let {} = {value}", targets[0]),

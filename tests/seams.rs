@@ -21,8 +21,18 @@ use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
 
-const GRAPHS: [&str; 8] =
-    ["tiles", ANISOTROPIC, "scattered", "nested", "indirection", "priority", "choice", "baked"];
+const GRAPHS: [&str; 10] = [
+    "tiles",
+    ANISOTROPIC,
+    "scattered",
+    "nested",
+    "indirection",
+    "priority",
+    "choice",
+    "baked",
+    "families",
+    "mosaic",
+];
 /// The tiles, filtered by up to eight taps.
 const ANISOTROPIC: &str = "tiles_anisotropic";
 const SIDE: u32 = 96;

@@ -9,8 +9,9 @@ use texgraph_runtime::render::Request;
 use texgraph_runtime::resource::{Tables, load};
 
 /// The graphs, by the names of their files in `graphs/` and in `benches/handwritten/`. Each has a texture
-/// `t`, evaluated for four parts of a pixel, and one `once`, which is not.
-pub const GRAPHS: [&str; 7] = ["tiles", "scattered", "nested", "indirection", "priority", "choice", "baked"];
+/// `t`, evaluated for several parts of a pixel, and one `once`, which is not.
+pub const GRAPHS: [&str; 9] =
+    ["tiles", "scattered", "nested", "indirection", "priority", "choice", "baked", "families", "mosaic"];
 
 /// Pixels along the side of a cell, which has 128 texels: from 16 times magnified to 64 cells a pixel.
 /// On the plane, at its lower edge. None divides a cell evenly.
