@@ -9,11 +9,20 @@
 @group(0) @binding(8) var shore: texture_2d_array<f32>;
 @group(0) @binding(9) var shore_filtering: sampler;
 @group(0) @binding(10) var shore_means: texture_2d<f32>;
+@group(0) @binding(12) var order: texture_2d<i32>;
 
 const TEXELS = 96.0;
 
+// A permutation, looked up for each digit of a place: both families stand equally often in any
+// sixty-four cells of a row or a column (Lefebvre & Neyret 2003, §3.5).
 fn family(cell: vec2<i32>) -> i32 {
-    return i32(hash(cell, 1).x * 2.0);
+    let place = cell + 81006;
+    var s = 0;
+    for (var digit = 0; digit < 6; digit += 1) {
+        let part = select(place.x, place.y, digit > 2) >> u32(6 * (digit % 3));
+        s = textureLoad(order, vec2((part + s) & 63, 0), 0).x;
+    }
+    return s >> 5;
 }
 
 @fragment

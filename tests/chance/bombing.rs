@@ -94,3 +94,25 @@ fn bombing_is_brute_force() {
         assert!(covered > (SIDE * SIDE / 4) as usize, "{covered}");
     }
 }
+
+/// How many stamps are drawn a pixel: each adds 1 to what lies below an alpha that is 0 or 1.
+fn drawn(per_cell: i32, alpha: &str) -> f32 {
+    let text = format!(
+        "texture t(uv: vec2) -> (color: color) {{\n    color = bomb(uv * {CELLS:?}, |at, rnd| vec4(1.0, 0.0, 0.0, {alpha}), per_cell: {per_cell}, round: true)\n}}\n"
+    );
+    let seen = Drawing::of(&text).cells(SIDE);
+    seen.iter().map(|pixel| pixel[0]).sum::<f32>() / seen.len() as f32
+}
+
+#[test]
+fn what_is_covered_is_not_drawn() {
+    for per_cell in [1, 2, 4] {
+        let [disc, clear] =
+            ["if length(at - 0.5) < 0.5 { 1.0 } else { 0.0 }", "0.0"].map(|a| drawn(per_cell, a));
+        println!(
+            "{per_cell} a cell: {disc:.2} of {clear:.2} stamps in reach are drawn, of {} at most",
+            4 * per_cell
+        );
+        assert!(clear <= 4.0 * per_cell as f32 && disc < 0.95 * clear, "{disc} of {clear}");
+    }
+}

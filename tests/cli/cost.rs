@@ -67,3 +67,19 @@ fn what_is_wrong_is_not_counted() {
     shop.run(&["cost", "a.tex:plane"]).fails(1, "`plane`");
     shop.run(&["cost", "gone.tex"]).fails(1, "gone.tex");
 }
+
+#[test]
+fn bombing_samples_four_pictures_for_each_stamp_of_a_cell_at_most() {
+    let stamps = ["|at, rnd| sheet.reference(int(rnd.x * 4.0), at, edges: clear)", "|at, rnd| vec4(rnd.x)"];
+    let wanted = [[4, 8, 12], [0, 0, 0]];
+    for (stamp, wanted) in stamps.into_iter().zip(wanted) {
+        for (per_cell, samples) in (1..).zip(wanted) {
+            let text = format!(
+                "let sheet = patterns(\"gone.png\", grid: ivec2(4, 1))\ntexture t(uv: vec2) -> (color: color) {{\n    color = bomb(uv * 8.0, {stamp}, per_cell: {per_cell})\n}}\n"
+            );
+            let run = Workshop::new(&[("t.tex", &text)]).run(&["cost", "t.tex", "--format=json"]);
+            let costs: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+            assert_eq!(costs[0]["passes"][0]["worst"]["reads"], f64::from(samples), "{per_cell}: {costs:#}");
+        }
+    }
+}
