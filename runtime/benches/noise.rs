@@ -6,8 +6,10 @@
 //! Run with `cargo bench -p texgraph-runtime --no-default-features --bench noise`.
 
 use cpu_time::ThreadTime;
-use fastnoise_lite::{FastNoiseLite, FractalType, NoiseType};
-use noise::{Fbm, MultiFractal, NoiseFn, Perlin};
+use fastnoise_lite::{CellularDistanceFunction, CellularReturnType, FastNoiseLite, FractalType, NoiseType};
+use noise::core::worley::{ReturnType, distance_functions::euclidean, worley_2d};
+use noise::permutationtable::PermutationTable;
+use noise::{Fbm, MultiFractal, NoiseFn, Perlin, Simplex, Value};
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::path::Path;
@@ -62,6 +64,24 @@ fn cases() -> Vec<Case> {
             lite: lite_space(lite(NoiseType::Perlin)),
         },
         Case {
+            name: "value, 2D",
+            ours: "value_noise(p)",
+            noise: plane(Value::new(1)),
+            lite: lite_plane(lite(NoiseType::Value)),
+        },
+        Case {
+            name: "simplex, 2D",
+            ours: "simplex(p)",
+            noise: plane(Simplex::new(1)),
+            lite: lite_plane(lite(NoiseType::OpenSimplex2)),
+        },
+        Case {
+            name: "cellular F1, 2D",
+            ours: "voronoi(p).f1",
+            noise: cells(),
+            lite: lite_plane(cellular(lite(NoiseType::Cellular))),
+        },
+        Case {
             name: "fBm of 5 octaves, 2D",
             ours: "fbm(p)",
             noise: plane(Fbm::<Perlin>::new(1).set_octaves(5)),
@@ -88,6 +108,19 @@ fn lite(kind: NoiseType) -> FastNoiseLite {
 fn octaves(mut lite: FastNoiseLite) -> FastNoiseLite {
     lite.set_fractal_type(Some(FractalType::FBm));
     lite.set_fractal_octaves(Some(5));
+    lite
+}
+
+/// The distance to the nearest point, by the crate `noise`, whose `Worley` stays on its thread.
+fn cells() -> Work {
+    let table = PermutationTable::new(1);
+    Box::new(move || fill(|x, y| worley_2d(&table, euclidean, ReturnType::Distance, [x, y].into())))
+}
+
+/// The distance to the nearest of nine cells' points.
+fn cellular(mut lite: FastNoiseLite) -> FastNoiseLite {
+    lite.set_cellular_distance_function(Some(CellularDistanceFunction::Euclidean));
+    lite.set_cellular_return_type(Some(CellularReturnType::Distance));
     lite
 }
 
