@@ -78,7 +78,7 @@ fn means_and_variances_are_as_documented() {
 }
 
 /// What repeats after eight cells, in calls of `p`.
-const TILED: [&str; 12] = [
+const TILED: [&str; 14] = [
     "noise(p, period: ivec2(8))",
     "noise(vec3(p, 0.3), period: ivec3(8))",
     "noise(vec4(p, 0.3, 0.6), period: ivec4(8))",
@@ -91,6 +91,8 @@ const TILED: [&str; 12] = [
     "fbm(p, octaves: 5, period: ivec2(8))",
     "turbulence(p, octaves: 5, period: ivec2(8))",
     "ridged(p, octaves: 5, period: ivec2(8))",
+    "marble(p, period: ivec2(8)).vein",
+    "clouds(p, period: ivec2(8)).density",
 ];
 
 #[test]
@@ -107,6 +109,23 @@ fn tiled_noises_match_at_the_border_to_the_last_bit() {
             let there = drawing.seen([64; 2], region);
             let differ = here.iter().zip(&there).filter(|(a, b)| a[0].to_bits() != b[0].to_bits()).count();
             assert_eq!(differ, 0, "{call} at {region:?}");
+        }
+    }
+}
+
+/// What moves its own place repeats but for what the place loses where numbers are larger.
+#[test]
+fn materials_match_at_the_border() {
+    for call in ["rust(p, period: ivec2(8)).height", "granite(p, period: ivec2(8)).color.r"] {
+        let text = format!(
+            "texture t(uv: vec2) -> (value: float) {{\n    let p = uv * 8.0\n    value = {call}\n}}\n"
+        );
+        let drawing = Drawing::of(&text);
+        let here = drawing.seen([64; 2], [0.0, 0.0, 1.0, 1.0]);
+        for region in [[1.0, 0.0, 2.0, 1.0], [0.0, 1.0, 1.0, 2.0], [-3.0, 2.0, -2.0, 3.0]] {
+            let there = drawing.seen([64; 2], region);
+            let differ = here.iter().zip(&there).filter(|(a, b)| (a[0] - b[0]).abs() > 1e-3).count();
+            assert!(differ <= 4, "{call} at {region:?}: {differ} pixels");
         }
     }
 }

@@ -11,6 +11,7 @@ mod far;
 mod layers;
 mod material;
 mod motifs;
+mod oversampled;
 mod shapes;
 mod space;
 mod splat;
