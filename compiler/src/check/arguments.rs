@@ -1,6 +1,6 @@
 //! Arguments to inputs: by position, by name, by default; dimensions bound; values converted.
 
-use super::call::accepts;
+use super::candidates::accepts;
 use super::head::{Head, InputType, Known};
 use super::types::{self, Declared, Dims};
 use super::wire::Wire;

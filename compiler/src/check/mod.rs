@@ -8,6 +8,7 @@
 
 mod arguments;
 mod call;
+mod candidates;
 mod choice;
 mod constructor;
 mod default;

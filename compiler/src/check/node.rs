@@ -2,7 +2,8 @@
 //! function of the inputs that its type names and of what it reads from where it was written.
 
 use super::arguments::{Arguments, Given};
-use super::call::{Callee, Candidates};
+use super::call::Callee;
+use super::candidates::Candidates;
 use super::types::{Declared, NodeType};
 use super::wire::{NodeWire, Wire};
 use super::{Checker, Frame};
