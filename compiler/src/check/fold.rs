@@ -214,7 +214,10 @@ impl<'a> Checker<'a> {
         let mut needs = order::Needs::default();
         for statement in &body.statements {
             free.read(order::value_of(statement));
-            needs.push(free.values.iter().filter_map(|name| binder.get(name).copied()));
+            let reads = free.reads(|call, input, word| {
+                binder.contains_key(word) && self.is_choice_anywhere(call, input, word)
+            });
+            needs.push(reads.filter_map(|name| binder.get(name).copied()));
         }
         let (order, rings) = order::sort(&needs);
         for ring in &rings {
