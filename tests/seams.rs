@@ -165,7 +165,7 @@ fn flatten((program, tables): &mut Loaded) {
     for (index, resource) in program.manifest.resources.iter_mut().enumerate() {
         for texture in &mut resource.textures {
             let Some(old) = &texture.table else { continue };
-            if old.format == Format::R32Sint {
+            if matches!(old.format, Format::R32Sint | Format::Rgba32Sint) {
                 continue;
             }
             let table = Table::mipmapped(Format::Rgba16Float, [old.width, old.height], old.layers);
