@@ -22,6 +22,7 @@ fn t_fragment(@location(0) uv: vec2<f32>) -> @location(0) vec4<f32> {
         winner = select(winner, cell, wins);
     }
     let pick = i32(hash(winner, 0).x * 16.0);
-    let tile = textureSampleGrad(tiles, filtering, fract(p), pick, right, down);
+    let at = fract(p + hash(winner, 1769109).xy);
+    let tile = textureSampleGrad(tiles, filtering, at, pick, right, down);
     return mix(tile, textureLoad(means, vec2(16, 0), 0), fade(p));
 }
