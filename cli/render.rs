@@ -32,7 +32,8 @@ pub fn run(args: &Render) -> Result<(), Problem> {
     let (file, texture) = program::split(&args.file);
     let library = program::library()?;
     let program = Program::open(&library, &file, args.common.allow_outside)?;
-    let options = Options { texture, plane, ..Options::default() };
+    // The same picture on every adapter.
+    let options = Options { texture, plane, exact_levels: true, ..Options::default() };
     let mut compiled = compile(&program, options, args.output.as_deref())?;
     let request = request(args, &compiled)?;
     let tables = program.load(&mut compiled)?;

@@ -67,6 +67,9 @@ pub struct Options {
     /// The texture on the ground instead of in a flat picture; the complete form then takes `uv` as
     /// the place in the picture.
     pub plane: Option<Plane>,
+    /// Every level of detail is worked out in the shader, by the definition, in place of the driver's
+    /// own: the same picture on every adapter, and on the CPU, for some more arithmetic.
+    pub exact_levels: bool,
 }
 
 impl Default for Options {
@@ -81,6 +84,7 @@ impl Default for Options {
             first_binding: 0,
             profile: Profile::Webgpu,
             plane: None,
+            exact_levels: false,
         }
     }
 }
@@ -157,7 +161,12 @@ pub fn compile(
     let Planned { graphs, manifest } = planned(library, &ahead, &modules, options).map_err(fail)?;
     let mut passes = Vec::new();
     for (i, PassGraph { graph, .. }) in graphs.into_iter().enumerate() {
-        let lowered = lower::lower(&graph, &contract::of_pass(&manifest, i), &ahead.objects);
+        let manifest = contract::of_pass(&manifest, i);
+        let lowered = if options.exact_levels {
+            lower::lower(&pass::share_level::everywhere(graph.clone()), &manifest, &lower::Objects::default())
+        } else {
+            lower::lower(&graph, &manifest, &ahead.objects)
+        };
         let wgsl = emit::wgsl(&lowered).map_err(|why| fail(vec![limits::bug(main_place(&modules), &why)]))?;
         passes.push(Pass { graph, wgsl });
     }

@@ -31,9 +31,8 @@ pub fn run(mut graph: Graph) -> Graph {
     graph
 }
 
-/// The same for every sample, shared or not: for adapters whose own levels are off, as some software
-/// drivers' are, and to tell their error from ours. All functions are this graph's own then, the
-/// library's too.
+/// The same for every sample, shared or not: adapters may take other levels than the definition's, as
+/// software drivers do. All functions are this graph's own then, the library's too.
 pub fn everywhere(mut graph: Graph) -> Graph {
     for function in &mut graph.functions {
         let keys = function.values.iter().filter_map(|operation| key(function, operation));
