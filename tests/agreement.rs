@@ -1,6 +1,6 @@
 //! CPU and GPU draw the same: every example, every golden file and every node of the library, in a
-//! flat view and on the ground in perspective, at three zoom levels, drawn as `texgraph render` does:
-//! with exact levels of detail. At the end stands which agrees least.
+//! flat view and on the ground in perspective, at three zoom levels. At the end stands which agrees
+//! least.
 //!
 //! GPU tests are shown as ignored where there is no adapter; `TEXGRAPH_GPU=required` makes that a
 //! failure.
@@ -9,8 +9,9 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-use texgraph_compiler::diagnostic::render;
+use texgraph_compiler::pass::share_level;
 use texgraph_compiler::{Library, Options, Plane, Program, compile, textures};
+use texgraph_compiler::{contract, diagnostic::render, emit, lower};
 use texgraph_runtime::cpu;
 use texgraph_runtime::gpu::{Gpu, Preference};
 use texgraph_runtime::picture::{Content, Picture};
@@ -37,6 +38,21 @@ const FLAT: [u32; 2] = [251, 251];
 /// Sides that are powers of two give both the same `uv` to the last bit. Near the horizon the last bit is
 /// much of a cell.
 const GROUND: [u32; 2] = [256, 256];
+
+/// Where a software adapter's own level of detail is off by so much that it shows (docs/quality.md). The
+/// same graph with the levels worked out in the shader agrees as all others do, which is tested here.
+const LISTED: &[&str] = &[
+    "examples/landscape.tex:landscape::flat, color",
+    "examples/signboard.tex:signboard::flat, color",
+    "examples/stamps.tex:stamps::ground, color",
+    "examples/terrain.tex:terrain::flat, color",
+    "examples/terrain.tex:terrain::ground, color",
+    "tests/golden/bakes.tex:bakes::flat, color",
+    "tests/golden/bakes.tex:bakes::ground, color",
+    "tests/golden/sampled.tex:sampled::ground, color",
+    "tests/golden/tiles.tex:tiles::ground, color",
+    "tests/golden/tiling_far.tex:tiling_far::ground, color",
+];
 
 /// What has been compared, and the share that agrees.
 static SHARES: Mutex<Vec<(f64, String)>> = Mutex::new(Vec::new());
@@ -149,8 +165,7 @@ impl Case {
     /// The program with its tables.
     fn loaded(&self, plane: Option<Plane>) -> Result<(Program, Tables), Failed> {
         let project = Project::new(&self.file, true);
-        let texture = Some(self.texture.clone());
-        let options = Options { texture, plane, exact_levels: true, ..Options::default() };
+        let options = Options { texture: Some(self.texture.clone()), plane, ..Options::default() };
         let compiled = compile(&Library::standard()?, project.main(), &project, &options);
         let compiled = compiled.map_err(|f| render::human(&f.sources, &f.diagnostics))?;
         let mut program = compiled.program;
@@ -167,11 +182,16 @@ fn agrees(gpu: &Gpu, case: &Case) -> Result<(), Failed> {
             let request = Request { time: 1.25, output, ..request.clone() };
             let ours =
                 cpu::render(&program, &tables, &request, &|_| {}).map_err(|error| error.to_string())?;
-            let theirs = drawn(gpu, &program, &tables, &request)?;
-            let share = agreement(&ours, &theirs)?;
-            let line = format!("{:.3} % {}, {}, zoom {zoom}", share * 100.0, case.name(), described.name);
+            let share = agreement(&ours, &drawn(gpu, &program, &tables, &request)?)?;
+            let output = format!("{}, {}", case.name(), described.name);
+            let mut line = format!("{:.3} % {output}, zoom {zoom}", share * 100.0);
             if share < AGREE {
-                failures.push(format!("{line}; {:?}", ours.difference(&theirs, TOLERANCE)));
+                let twin = drawn(gpu, &with_levels(&program)?, &tables, &request)?;
+                let exact = agreement(&ours, &twin)?;
+                line += &format!("; {:.3} % with levels worked out in the shader", exact * 100.0);
+                if exact < AGREE || !LISTED.contains(&output.as_str()) {
+                    failures.push(format!("{line}; {:?}", ours.difference(&twin, TOLERANCE)));
+                }
             }
             println!("{line}");
             SHARES.lock().map_err(|_| "a test panicked")?.push((share, line));
@@ -183,6 +203,17 @@ fn agrees(gpu: &Gpu, case: &Case) -> Result<(), Failed> {
 fn drawn(gpu: &Gpu, program: &Program, tables: &Tables, request: &Request) -> Result<Picture, String> {
     let mut scene = gpu.prepare(program, tables, request.output).map_err(|error| error.to_string())?;
     scene.render(request, &|_| {}).map_err(|error| error.to_string())
+}
+
+/// The same program with every level of detail worked out in its shaders, by the definition.
+fn with_levels(program: &Program) -> Result<Program, String> {
+    let mut twin = program.clone();
+    for (i, pass) in twin.passes.iter_mut().enumerate() {
+        let graph = share_level::everywhere(pass.graph.clone());
+        let manifest = contract::of_pass(&program.manifest, i);
+        pass.wgsl = emit::wgsl(&lower::lower(&graph, &manifest, &lower::Objects::default()))?;
+    }
+    Ok(twin)
 }
 
 /// The share of pixels that agree: of colour as it is written, in 8 bits; of data as it is, what
