@@ -60,6 +60,11 @@ impl Slope {
         self.right[i] == 0.0 && self.down[i] == 0.0
     }
 
+    /// Whether a component is the same in all places of a row.
+    pub fn is_constant_across(&self, i: usize) -> bool {
+        self.right[i] == 0.0
+    }
+
     /// The screen derivative to the right.
     pub fn right(&self) -> [f32; 4] {
         self.right.map(|x| x as f32)

@@ -6,7 +6,7 @@
 //!
 //! [`Evaluate`]: super::Evaluate
 
-use super::value::finite;
+use super::value::{finite, map};
 use crate::graph::{Constant, Scalar};
 use fearless_simd::Simd;
 
@@ -23,13 +23,15 @@ pub type Vector<'a> = [&'a Lanes; 4];
 pub static ZERO: Lanes = [0; LANES];
 
 /// One component of a function's argument or value.
-pub trait Word: Copy {
+pub trait Word: Copy + Default {
     /// Its type in the graph; none for that of the first argument.
     const SCALAR: Option<Scalar>;
     /// From what a constant holds.
     fn of(bits: u32) -> Self;
     /// What a constant holds.
     fn bits(self) -> u32;
+    /// The same where a float is known to be finite.
+    fn raw(self) -> u32;
 }
 
 impl Word for f32 {
@@ -44,6 +46,11 @@ impl Word for f32 {
     fn bits(self) -> u32 {
         finite(self).to_bits()
     }
+
+    #[inline(always)]
+    fn raw(self) -> u32 {
+        self.to_bits()
+    }
 }
 
 impl Word for i32 {
@@ -56,6 +63,11 @@ impl Word for i32 {
 
     #[inline(always)]
     fn bits(self) -> u32 {
+        self as u32
+    }
+
+    #[inline(always)]
+    fn raw(self) -> u32 {
         self as u32
     }
 }
@@ -72,10 +84,15 @@ impl Word for bool {
     fn bits(self) -> u32 {
         u32::from(self)
     }
+
+    #[inline(always)]
+    fn raw(self) -> u32 {
+        u32::from(self)
+    }
 }
 
 /// Bits of any type, which are passed on as they are.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Bits(u32);
 
 impl Word for Bits {
@@ -90,6 +107,11 @@ impl Word for Bits {
     fn bits(self) -> u32 {
         self.0
     }
+
+    #[inline(always)]
+    fn raw(self) -> u32 {
+        self.0
+    }
 }
 
 /// A whole argument: a word, or an array of them.
@@ -98,6 +120,8 @@ pub trait Argument: Copy {
     fn of(value: &Constant) -> Self;
     /// Of the value in a lane.
     fn lane(lanes: &Vector<'_>, i: usize) -> Self;
+    /// Of its components.
+    fn of_words(words: [u32; 4]) -> Self;
 }
 
 impl<T: Word> Argument for T {
@@ -109,6 +133,11 @@ impl<T: Word> Argument for T {
     fn lane(lanes: &Vector<'_>, i: usize) -> T {
         T::of(lanes[0][i])
     }
+
+    #[inline(always)]
+    fn of_words([x, ..]: [u32; 4]) -> T {
+        T::of(x)
+    }
 }
 
 impl<T: Word, const N: usize> Argument for [T; N] {
@@ -118,39 +147,74 @@ impl<T: Word, const N: usize> Argument for [T; N] {
 
     #[inline(always)]
     fn lane(lanes: &Vector<'_>, i: usize) -> [T; N] {
-        std::array::from_fn(|c| T::of(lanes[c][i]))
+        let mut vector = [T::default(); N];
+        for c in 0..N {
+            vector[c] = T::of(lanes[c][i]);
+        }
+        vector
+    }
+
+    #[inline(always)]
+    fn of_words(words: [u32; 4]) -> [T; N] {
+        let mut vector = [T::default(); N];
+        for c in 0..N {
+            vector[c] = T::of(words[c]);
+        }
+        vector
     }
 }
 
 /// A whole value: a word, or an array of them.
 pub trait Outcome: Copy {
+    /// The type of a component; none for that of the first argument.
+    const SCALAR: Option<Scalar>;
     /// As one value; `first` is the first argument.
     fn constant(self, first: &Constant) -> Constant;
     /// Into a lane.
     fn store(self, lanes: &mut [Lanes; 4], i: usize);
+    /// Its components, where floats are known to be finite.
+    fn raw_words(self) -> [u32; 4];
 }
 
 impl<T: Word> Outcome for T {
+    const SCALAR: Option<Scalar> = <T as Word>::SCALAR;
+
     fn constant(self, first: &Constant) -> Constant {
-        Constant::new(T::SCALAR.unwrap_or(first.scalar()), [self.bits()])
+        Constant::new(<T as Word>::SCALAR.unwrap_or(first.scalar()), [self.bits()])
     }
 
     #[inline(always)]
     fn store(self, lanes: &mut [Lanes; 4], i: usize) {
         lanes[0][i] = self.bits();
     }
+
+    #[inline(always)]
+    fn raw_words(self) -> [u32; 4] {
+        [self.raw(), 0, 0, 0]
+    }
 }
 
 impl<T: Word, const N: usize> Outcome for [T; N] {
+    const SCALAR: Option<Scalar> = <T as Word>::SCALAR;
+
     fn constant(self, first: &Constant) -> Constant {
-        Constant::new(T::SCALAR.unwrap_or(first.scalar()), self.map(T::bits))
+        Constant::new(<T as Word>::SCALAR.unwrap_or(first.scalar()), map(self, T::bits))
     }
 
     #[inline(always)]
     fn store(self, lanes: &mut [Lanes; 4], i: usize) {
-        for (lanes, word) in lanes.iter_mut().zip(self) {
-            lanes[i] = word.bits();
+        for c in 0..N {
+            lanes[c][i] = self[c].bits();
         }
+    }
+
+    #[inline(always)]
+    fn raw_words(self) -> [u32; 4] {
+        let mut words = [0; 4];
+        for c in 0..N {
+            words[c] = self[c].raw();
+        }
+        words
     }
 }
 
@@ -174,16 +238,34 @@ pub fn one1<A: Word, R: Word>([a, ..]: [u32; 3], f: impl Fn(A) -> R) -> u32 {
     f(A::of(a)).bits()
 }
 
+/// The same where the value is not made finite.
+#[inline(always)]
+pub fn raw1<A: Word, R: Word>([a, ..]: [u32; 3], f: impl Fn(A) -> R) -> u32 {
+    f(A::of(a)).raw()
+}
+
 /// A function of two words, of one value.
 #[inline(always)]
 pub fn one2<A: Word, B: Word, R: Word>([a, b, _]: [u32; 3], f: impl Fn(A, B) -> R) -> u32 {
     f(A::of(a), B::of(b)).bits()
 }
 
+/// The same where the value is not made finite.
+#[inline(always)]
+pub fn raw2<A: Word, B: Word, R: Word>([a, b, _]: [u32; 3], f: impl Fn(A, B) -> R) -> u32 {
+    f(A::of(a), B::of(b)).raw()
+}
+
 /// A function of three words, of one value.
 #[inline(always)]
 pub fn one3<A: Word, B: Word, C: Word, R: Word>([a, b, c]: [u32; 3], f: impl Fn(A, B, C) -> R) -> u32 {
     f(A::of(a), B::of(b), C::of(c)).bits()
+}
+
+/// The same where the value is not made finite.
+#[inline(always)]
+pub fn raw3<A: Word, B: Word, C: Word, R: Word>([a, b, c]: [u32; 3], f: impl Fn(A, B, C) -> R) -> u32 {
+    f(A::of(a), B::of(b), C::of(c)).raw()
 }
 
 /// A function of one word, in all lanes.
@@ -244,6 +326,21 @@ pub fn whole_one2<A: Argument, B: Argument, R: Outcome>(
     f(A::of(&a), B::of(&b)).constant(&a)
 }
 
+/// A function of a whole argument, of its components; the value is not made finite.
+#[inline(always)]
+pub fn whole_raw1<A: Argument, R: Outcome>([a, _]: [[u32; 4]; 2], f: impl Fn(A) -> R) -> [u32; 4] {
+    f(A::of_words(a)).raw_words()
+}
+
+/// A function of two whole arguments, of their components; the value is not made finite.
+#[inline(always)]
+pub fn whole_raw2<A: Argument, B: Argument, R: Outcome>(
+    [a, b]: [[u32; 4]; 2],
+    f: impl Fn(A, B) -> R,
+) -> [u32; 4] {
+    f(A::of_words(a), B::of_words(b)).raw_words()
+}
+
 /// A function of a whole argument, in all lanes.
 #[inline(always)]
 pub fn whole_all1<A: Argument, R: Outcome>(
@@ -285,18 +382,25 @@ pub fn whole_all2<A: Argument, B: Argument, R: Outcome>(
 /// `each!((f32, f32) -> bool, |a, b| a < b)`.
 macro_rules! each {
     (($a:ty) -> $r:ty, $f:expr) => {
-        each!(one1, all1, $r, <$a, $r>, $f)
+        each!(one1, raw1, all1, $r, <$a, $r>, $f)
     };
     (($a:ty, $b:ty) -> $r:ty, $f:expr) => {
-        each!(one2, all2, $r, <$a, $b, $r>, $f)
+        each!(one2, raw2, all2, $r, <$a, $b, $r>, $f)
     };
     (($a:ty, $b:ty, $c:ty) -> $r:ty, $f:expr) => {
-        each!(one3, all3, $r, <$a, $b, $c, $r>, $f)
+        each!(one3, raw3, all3, $r, <$a, $b, $c, $r>, $f)
     };
-    ($one:ident, $all:ident, $r:ty, <$($t:ty),+>, $f:expr) => {
+    ($one:ident, $raw:ident, $all:ident, $r:ty, <$($t:ty),+>, $f:expr) => {
         $crate::intrinsic::Evaluate::Each {
             scalar: <$r as $crate::intrinsic::lanes::Word>::SCALAR,
             one: |words| $crate::intrinsic::lanes::$one::<$($t),+>(words, $f),
+            raw: {
+                #[inline(always)]
+                fn raw(words: [u32; 3]) -> u32 {
+                    $crate::intrinsic::lanes::$raw::<$($t),+>(words, $f)
+                }
+                raw
+            },
             all: |arguments, out| $crate::intrinsic::lanes::$all::<$($t),+>(arguments, out, $f),
         }
     };
@@ -306,13 +410,18 @@ macro_rules! each {
 /// `whole!(([f32; N], [f32; N]) -> f32, value::dot)`, where `N` is the width of the first.
 macro_rules! whole {
     (($a:ty) -> $r:ty, $f:expr) => {
-        whole!(whole_one1, whole_all1, <$a, $r>, $f)
+        whole!(whole_one1, whole_raw1, whole_all1, $r, <$a, $r>, $f)
     };
     (($a:ty, $b:ty) -> $r:ty, $f:expr) => {
-        whole!(whole_one2, whole_all2, <$a, $b, $r>, $f)
+        whole!(whole_one2, whole_raw2, whole_all2, $r, <$a, $b, $r>, $f)
     };
-    ($one:ident, $all:ident, <$($t:ty),+>, $f:expr) => {
+    ($one:ident, $raw:ident, $all:ident, $r:ty, <$($t:ty),+>, $f:expr) => {
         $crate::intrinsic::Evaluate::Whole {
+            scalar: {
+                #[allow(dead_code, reason = "only some rows have a width")]
+                const N: usize = 1;
+                <$r as $crate::intrinsic::lanes::Outcome>::SCALAR
+            },
             one: |width, arguments| {
                 fn one<const N: usize>(arguments: [$crate::graph::Constant; 2]) -> $crate::graph::Constant {
                     $crate::intrinsic::lanes::$one::<$($t),+>(arguments, $f)
@@ -323,6 +432,22 @@ macro_rules! whole {
                     3 => one::<3>(arguments),
                     _ => one::<4>(arguments),
                 }
+            },
+            raw: {
+                #[inline(always)]
+                fn raw<const N: usize>(arguments: [[u32; 4]; 2]) -> [u32; 4] {
+                    $crate::intrinsic::lanes::$raw::<$($t),+>(arguments, $f)
+                }
+                #[inline(always)]
+                fn any(width: usize, arguments: [[u32; 4]; 2]) -> [u32; 4] {
+                    match width {
+                        1 => raw::<1>(arguments),
+                        2 => raw::<2>(arguments),
+                        3 => raw::<3>(arguments),
+                        _ => raw::<4>(arguments),
+                    }
+                }
+                any
             },
             all: |width, arguments, out| {
                 fn all<const N: usize>(

@@ -20,7 +20,7 @@ pub use derivative::{Tangents, zero};
 pub use lanes::{LANES, Lanes, Vector, ZERO, wide};
 pub use table::*;
 pub use tiling::{Arguments, Tiling};
-pub use value::floor;
+pub use value::{finite, floor, whole_to_int};
 
 use crate::graph::{Builder, Constant, Scalar, Value};
 
@@ -57,14 +57,20 @@ pub enum Evaluate {
         scalar: Option<Scalar>,
         /// Of a component of each argument.
         one: fn([u32; 3]) -> u32,
-        /// The same in all lanes.
+        /// The same, but a float that is not finite stays as it is.
+        raw: fn([u32; 3]) -> u32,
+        /// As `one`, in all lanes.
         all: fn([&Lanes; 3], &mut Lanes),
     },
     /// By a function of up to two whole arguments; the first has this width.
     Whole {
+        /// What a component of the value is; none for that of the first argument.
+        scalar: Option<Scalar>,
         /// Of one value.
         one: fn(usize, [Constant; 2]) -> Constant,
-        /// The same in all lanes.
+        /// The same of components, but a float that is not finite stays as it is.
+        raw: fn(usize, [[u32; 4]; 2]) -> [u32; 4],
+        /// As `one`, in all lanes.
         all: fn(usize, [Vector<'_>; 2], &mut [Lanes; 4]),
     },
 }
@@ -76,6 +82,13 @@ impl Evaluate {
         match self {
             Evaluate::Each { scalar, .. } => *scalar,
             Evaluate::Whole { .. } => None,
+        }
+    }
+
+    /// What a component of the value is, however many there are. None for that of the first argument.
+    pub fn scalar(&self) -> Option<Scalar> {
+        match self {
+            Evaluate::Each { scalar, .. } | Evaluate::Whole { scalar, .. } => *scalar,
         }
     }
 }
@@ -142,6 +155,12 @@ impl Intrinsic {
     pub fn is_callable(self) -> bool {
         !self.row().name.starts_with('(')
     }
+}
+
+/// What the `overload`th row of that name is worth, for code that is made of rows: a call of what this
+/// gives is a direct one. Fails when compiling texgraph itself where there is no such row.
+pub const fn row_of(name: &str, overload: usize) -> &'static Evaluate {
+    &TABLE[find(name, overload).0 as usize].value
 }
 
 /// The `overload`th row of that name, found when compiling texgraph itself.

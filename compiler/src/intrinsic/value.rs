@@ -10,17 +10,18 @@ pub fn evaluate(value: &Evaluate, arguments: &[Constant]) -> Constant {
     let width = arguments.first().map_or(1, |first| usize::from(first.width()));
     let argument = |k: usize| arguments.get(k).copied().unwrap_or(Constant::zero(Scalar::Float, 1));
     match *value {
-        Evaluate::Each { scalar, one, all: _ } => {
+        Evaluate::Each { scalar, one, .. } => {
             let arguments = [0, 1, 2].map(argument);
             let words = |i: usize| arguments.map(|argument| argument.int(i) as u32);
             let scalar = scalar.unwrap_or(arguments[0].scalar());
             Constant::new(scalar, (0..width).map(|i| one(words(i))))
         }
-        Evaluate::Whole { one, all: _ } => one(width, [0, 1].map(argument)),
+        Evaluate::Whole { one, .. } => one(width, [0, 1].map(argument)),
     }
 }
 
 /// What is worked out here is a number: NaN is 0, what overflows saturates.
+#[inline]
 pub fn finite(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(-f32::MAX, f32::MAX) }
 }
@@ -30,18 +31,21 @@ const NO_FRACTION: f32 = 8_388_608.0;
 
 /// The nearest integer, halves to the even one: a sum this large has no bits left for a fraction.
 /// As `libm::rintf`, without branches.
+#[inline]
 pub fn round(x: f32) -> f32 {
     let rounded = (x.abs() + NO_FRACTION) - NO_FRACTION;
     if x.abs() < NO_FRACTION { rounded.copysign(x) } else { x }
 }
 
 /// The greatest integer that is not greater. As `libm::floorf`, without branches.
+#[inline]
 pub fn floor(x: f32) -> f32 {
     let near = round(x);
     near - if near > x { 1.0 } else { 0.0 }
 }
 
 /// The least integer that is not less. As `libm::ceilf`, without branches.
+#[inline]
 pub fn ceil(x: f32) -> f32 {
     -floor(-x)
 }
@@ -57,16 +61,19 @@ pub const GREATEST_EXP: f32 = 87.0;
 pub const GREATEST_EXP2: f32 = 126.0;
 
 /// `x / y`, 0 where `y` counts as 0.
+#[inline]
 pub fn divide(x: f32, y: f32) -> f32 {
     if y.abs() < LEAST { 0.0 } else { x / y }
 }
 
 /// `x − y·floor(x / y)`, 0 where `y` counts as 0.
+#[inline]
 pub fn remainder(x: f32, y: f32) -> f32 {
     if y.abs() < LEAST { 0.0 } else { x - finite(y * floor(finite(x / y))) }
 }
 
 /// The quotient rounded down; 0 for a divisor of 0, and `MIN / -1` is `MIN`.
+#[inline]
 pub fn divide_int(x: i32, y: i32) -> i32 {
     if y == 0 {
         return 0;
@@ -77,6 +84,7 @@ pub fn divide_int(x: i32, y: i32) -> i32 {
 }
 
 /// What is left of [`divide_int`]: it has the divisor's sign.
+#[inline]
 pub fn remainder_int(x: i32, y: i32) -> i32 {
     if y == 0 {
         return 0;
@@ -86,17 +94,20 @@ pub fn remainder_int(x: i32, y: i32) -> i32 {
 }
 
 /// Truncates and saturates; NaN is 0.
+#[inline]
 pub fn to_int(x: f32) -> i32 {
     whole_to_int(floor(x.abs()).copysign(x))
 }
 
 /// Rounds down to an int and saturates; NaN is 0.
+#[inline]
 pub fn floor_int(x: f32) -> i32 {
     whole_to_int(floor(x))
 }
 
 /// As `x as i32` for a whole number, without branches: the sum's last 32 bits are the int.
-fn whole_to_int(x: f32) -> i32 {
+#[inline]
+pub fn whole_to_int(x: f32) -> i32 {
     let number = if x.is_nan() { 0.0 } else { x };
     let held = f64::from(number).max(f64::from(i32::MIN)).min(f64::from(i32::MAX));
     (held + 6_755_399_441_055_744.0).to_bits() as i32
@@ -128,11 +139,13 @@ pub fn logarithm(log: fn(f32) -> f32, x: f32) -> f32 {
 }
 
 /// a·(1 − t) + b·t
+#[inline]
 pub fn mix(a: f32, b: f32, t: f32) -> f32 {
     finite(a * (1.0 - t)) + finite(b * t)
 }
 
 /// 0 left of `low`, 1 right of `high`, smooth between; a step where their difference counts as 0.
+#[inline]
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     if (high - low).abs() < LEAST {
         return if x < low { 0.0 } else { 1.0 };
@@ -141,49 +154,84 @@ pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// A function of each component. As `array::map`, which is not always taken over by loops over lanes.
+#[inline(always)]
+pub fn map<A: Copy, B: Copy + Default, const N: usize>(v: [A; N], f: impl Fn(A) -> B) -> [B; N] {
+    let mut mapped = [B::default(); N];
+    for c in 0..N {
+        mapped[c] = f(v[c]);
+    }
+    mapped
+}
+
 /// The sum of the products of the components.
+#[inline]
 pub fn dot<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
-    a.into_iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
+    let mut sum = 0.0;
+    for c in 0..N {
+        sum += a[c] * b[c];
+    }
+    sum
 }
 
 /// Euclidean length.
+#[inline]
 pub fn length<const N: usize>(v: [f32; N]) -> f32 {
     finite(if N == 1 { v[0].abs() } else { dot(v, v).sqrt() })
 }
 
 /// The same direction with length 1; 0 for 0.
+#[inline]
 pub fn normalize<const N: usize>(v: [f32; N]) -> [f32; N] {
     let length = length(v);
-    v.map(|x| divide(x, length))
+    map(v, |x| divide(x, length))
 }
 
 /// Euclidean distance.
+#[inline]
 pub fn distance<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
-    length::<N>(std::array::from_fn(|i| a[i] - b[i]))
+    let mut way = a;
+    for c in 0..N {
+        way[c] -= b[c];
+    }
+    length(way)
 }
 
 /// The vector at right angles to both.
+#[inline]
 pub fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     let minor = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
 /// Whether two vectors agree in every component.
-pub fn equal<T: PartialEq, const N: usize>(a: [T; N], b: [T; N]) -> bool {
-    a.into_iter().zip(b).fold(true, |equal, (a, b)| equal & (a == b))
+#[inline]
+pub fn equal<T: Copy + PartialEq, const N: usize>(a: [T; N], b: [T; N]) -> bool {
+    let mut equal = true;
+    for c in 0..N {
+        equal &= a[c] == b[c];
+    }
+    equal
 }
 
 /// The negation of [`equal`].
-pub fn not_equal<T: PartialEq, const N: usize>(a: [T; N], b: [T; N]) -> bool {
+#[inline]
+pub fn not_equal<T: Copy + PartialEq, const N: usize>(a: [T; N], b: [T; N]) -> bool {
     !equal(a, b)
 }
 
 /// Whether all components hold.
+#[inline]
 pub fn all<const N: usize>(components: [bool; N]) -> bool {
-    components.into_iter().fold(true, |all, holds| all & holds)
+    let mut all = true;
+    for holds in components {
+        all &= holds;
+    }
+    all
 }
 
 /// The first where the condition holds, else the second.
+#[inline]
 pub fn choose<T>(condition: bool, yes: T, no: T) -> T {
     if condition { yes } else { no }
 }
@@ -195,22 +243,26 @@ pub fn component<T: Copy, const N: usize>(v: [T; N], index: i32) -> T {
 
 /// `hash(i, seed)`: pcg4d of (i padded with 0, seed); for four components the seed is xored into
 /// the last.
+#[inline]
 pub fn hash<const N: usize>(i: [i32; N], seed: i32) -> [f32; 4] {
     let word = |c: usize| i.get(c).map_or(0, |word| *word as u32);
     unit(pcg4d([word(0), word(1), word(2), word(3) ^ seed as u32]))
 }
 
 /// The hash of four ints.
+#[inline]
 pub fn hash4(words: [i32; 4]) -> [f32; 4] {
-    unit(pcg4d(words.map(|word| word as u32)))
+    unit(pcg4d(map(words, |word| word as u32)))
 }
 
 /// The upper 24 bits of each as a float in [0, 1). They fit an int, whose conversion is cheaper.
+#[inline]
 fn unit(words: [u32; 4]) -> [f32; 4] {
-    words.map(|u| (u >> 8) as i32 as f32 * (1.0 / 16_777_216.0))
+    map(words, |u| (u >> 8) as i32 as f32 * (1.0 / 16_777_216.0))
 }
 
 /// Four words to four words, each depending on all (Jarzynski & Olano 2020).
+#[inline]
 pub fn pcg4d(words: [u32; 4]) -> [u32; 4] {
     let stir = |[x, y, z, w]: [u32; 4]| {
         let x = x.wrapping_add(y.wrapping_mul(w));
@@ -219,11 +271,12 @@ pub fn pcg4d(words: [u32; 4]) -> [u32; 4] {
         let w = w.wrapping_add(y.wrapping_mul(z));
         [x, y, z, w]
     };
-    let seeded = words.map(|u| u.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
-    stir(stir(seeded).map(|u| u ^ (u >> 16)))
+    let seeded = map(words, |u: u32| u.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    stir(map(stir(seeded), |u| u ^ (u >> 16)))
 }
 
 /// `count` bits of `x` from bit `first` on, as a number from 0 up.
+#[inline]
 pub fn bits(x: i32, first: i32, count: i32) -> i32 {
     let first = first.clamp(0, 31) as u32;
     let count = count.clamp(0, 32 - first as i32) as u32;

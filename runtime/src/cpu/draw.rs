@@ -1,5 +1,6 @@
 //! Draws a picture: a machine for each thread, batch after batch.
 
+use super::fused::Rows;
 use super::inputs::Places;
 use super::machine::{Code, Machine};
 use super::mask::Mask;
@@ -7,16 +8,14 @@ use super::plan::Plan;
 use super::texture::Texture;
 use crate::pass::Pass;
 use crate::render::{RenderError, Request};
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+use rayon::iter::{IndexedParallelIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use texgraph_compiler::graph::{Graph, Scalar};
-use texgraph_compiler::intrinsic::{LANES, Lanes};
+use texgraph_compiler::intrinsic::{LANES, Lanes, wide};
 
 /// Batches that one thread takes on at least.
 const LEAST_BATCHES: usize = 16;
-
-/// The pixels of a batch.
-type Batch = [[f32; 4]; LANES];
 
 /// The pixels of the output of a graph, row by row.
 ///
@@ -29,52 +28,58 @@ pub fn draw(
     request: &Request,
     progress: &(dyn Fn(f32) + Sync),
 ) -> Result<Vec<[f32; 4]>, RenderError> {
-    let plan = Plan::new(pass, graph, request, textures)?;
+    let plan = Plan::new(pass, graph, request, textures, &mut Rows)?;
     let [width, height] = request.size.map(|side| side as usize);
-    let count = width * height;
-    // Whole batches, so that nothing is written twice; what is behind the last pixel is cut off.
-    let mut batches = Vec::new();
-    batches
-        .try_reserve_exact(count.div_ceil(LANES))
-        .map_err(|_| RenderError::Memory { size: request.size })?;
+    let mut pixels = blank(width * height).ok_or(RenderError::Memory { size: request.size })?;
     let done = AtomicUsize::new(0);
-    let batch = |machine: &mut Machine, n: usize| {
-        let pixels = LANES.min(count - n * LANES);
-        let batch = shade(&plan, textures, machine, &Places::from(n * LANES, width), pixels);
-        let before = done.fetch_add(pixels, Ordering::Relaxed);
-        for row in before / width..(before + pixels) / width {
+    let batch = |(machine, places): &mut (Machine, Places), (n, batch): (usize, &mut [[f32; 4]])| {
+        places.go(n * LANES, width);
+        shade(&plan, textures, machine, places, batch);
+        let before = done.fetch_add(batch.len(), Ordering::Relaxed);
+        for row in before / width..(before + batch.len()) / width {
             progress((row + 1) as f32 / height as f32);
         }
-        batch
     };
-    let numbers = (0..count.div_ceil(LANES)).into_par_iter().with_min_len(LEAST_BATCHES);
-    numbers.map_init(Machine::default, batch).collect_into_vec(&mut batches);
-    let mut pixels = batches.into_flattened();
-    pixels.truncate(count);
+    let batches = pixels.par_chunks_mut(LANES).enumerate().with_min_len(LEAST_BATCHES);
+    batches.for_each_init(Default::default, batch);
     Ok(pixels)
 }
 
-/// The first of the pixels at some places.
-fn shade(plan: &Plan, textures: &[Texture], machine: &mut Machine, places: &Places, pixels: usize) -> Batch {
+/// Black pixels; none if there is no memory for so many.
+fn blank(count: usize) -> Option<Vec<[f32; 4]>> {
+    // Memory that is new is black: nothing is written twice. But asking for too much of it would abort.
+    Vec::<[f32; 4]>::new().try_reserve_exact(count).ok()?;
+    Some(vec![[0.0; 4]; count])
+}
+
+/// Draws the pixels at the first of some places.
+fn shade(plan: &Plan, textures: &[Texture], machine: &mut Machine, places: &Places, pixels: &mut [[f32; 4]]) {
     let code = Code { functions: &plan.functions, known: &plan.known, textures };
-    machine.begin(code, plan.entry, Mask::MAX >> (LANES - pixels));
+    machine.begin(code, plan.entry, Mask::MAX >> (LANES - pixels.len()));
     for (i, source) in plan.inputs.iter().enumerate() {
         if let Some(lanes) = machine.input(i) {
             source.fill(places, lanes);
         }
     }
     machine.work(code);
-    let Some(output) = &plan.output else { return [[0.0; 4]; LANES] };
+    let Some(output) = &plan.output else { return };
     let lanes = output.components.map(|register| machine.lanes(code, register));
     match output.scalar {
-        Scalar::Float => pixels_of(lanes, f32::from_bits),
-        Scalar::Int => pixels_of(lanes, |bits| bits as i32 as f32),
-        Scalar::Bool => pixels_of(lanes, |bits| if bits != 0 { 1.0 } else { 0.0 }),
+        Scalar::Float => fill(pixels, lanes, f32::from_bits),
+        Scalar::Int => fill(pixels, lanes, |bits| bits as i32 as f32),
+        Scalar::Bool => fill(pixels, lanes, |bits| if bits != 0 { 1.0 } else { 0.0 }),
     }
 }
 
-/// Pixels of four components, as floats.
+/// Fills pixels with four components, as floats.
 #[inline(always)]
-fn pixels_of([r, g, b, a]: [&Lanes; 4], float: impl Fn(u32) -> f32) -> Batch {
-    std::array::from_fn(|i| [float(r[i]), float(g[i]), float(b[i]), float(a[i])])
+fn fill(pixels: &mut [[f32; 4]], [r, g, b, a]: [&Lanes; 4], float: impl Fn(u32) -> f32) {
+    wide(
+        #[inline(always)]
+        || {
+            for ((((pixel, r), g), b), a) in pixels.iter_mut().zip(r).zip(g).zip(b).zip(a) {
+                *pixel = [float(*r), float(*g), float(*b), float(*a)];
+            }
+        },
+    );
 }

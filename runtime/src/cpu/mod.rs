@@ -12,6 +12,7 @@
 //! ```
 
 mod draw;
+mod fused;
 mod inputs;
 mod machine;
 mod mask;

@@ -5,14 +5,15 @@
 //! arms that are skipped when no lane wants them ([`Step::Arm`]); what an arm writes in lanes that
 //! did not take it is never read.
 
+use super::fused::Row;
 use super::inputs::Source;
-use super::planner::Planner;
+use super::planner::{Fuse, Planner};
 use super::texture::Texture;
 use crate::pass::Pass;
 use crate::render::{RenderError, Request};
 use std::sync::Arc;
 use texgraph_compiler::graph::{Constant, Graph, Scalar};
-use texgraph_compiler::intrinsic::{LANES, Lanes, Vector};
+use texgraph_compiler::intrinsic::{Intrinsic, LANES, Lanes, Vector};
 
 /// What to compute for every pixel.
 pub struct Plan {
@@ -78,6 +79,7 @@ pub struct Planned {
 pub enum Step {
     /// A row of intrinsics that applies to each component on its own.
     Each {
+        row: Intrinsic,
         one: fn([u32; 3]) -> u32,
         all: fn([&Lanes; 3], &mut Lanes),
         arguments: [Register; 3],
@@ -85,11 +87,14 @@ pub enum Step {
     },
     /// A row of intrinsics that takes whole arguments; the first has this width.
     Whole {
+        row: Intrinsic,
         all: fn(usize, [Vector<'_>; 2], &mut [Lanes; 4]),
         width: usize,
         arguments: Box<[Components; 2]>,
         to: Targets,
     },
+    /// What a function computes, in one pass over the lanes.
+    Fused(Box<Fused>),
     /// The second where the first holds, else the third.
     Select { condition: Register, yes: Register, no: Register, to: Register },
     /// An entry of a table.
@@ -115,6 +120,17 @@ pub enum Step {
 
 /// Where the components of a result go; none where nobody wants one.
 pub type Targets = [Option<Register>; 4];
+
+/// A function's steps as one.
+#[derive(Clone)]
+pub struct Fused {
+    /// Which.
+    pub row: &'static Row,
+    /// The function's inputs, then its free constants.
+    pub arguments: Vec<Register>,
+    /// Where the components of its outputs go; none where nobody wants one.
+    pub to: Vec<Option<Register>>,
+}
 
 /// A call.
 #[derive(Clone)]
@@ -153,6 +169,7 @@ impl Step {
         match self {
             Step::Each { arguments, .. } => arguments.iter_mut().for_each(f),
             Step::Whole { arguments, .. } => arguments.iter_mut().flatten().for_each(f),
+            Step::Fused(fused) => fused.arguments.iter_mut().for_each(f),
             Step::Select { condition, yes, no, .. } => [condition, yes, no].into_iter().for_each(f),
             Step::Lookup { index, .. } => f(index),
             Step::Level { view, gradient, .. } => {
@@ -184,16 +201,20 @@ impl Step {
             | Step::Lookup { to, .. }
             | Step::Sample { to, .. }
             | Step::Texel { to, .. }
-            | Step::Size { to, .. } => {
-                for to in to {
-                    if to.as_mut().is_some_and(|register| !f(register)) {
-                        *to = None;
-                    }
-                }
-            }
+            | Step::Size { to, .. } => retain(to, f),
+            Step::Fused(fused) => retain(&mut fused.to, f),
             Step::Arm { .. } | Step::Join => {}
             Step::Call(call) => call.results.retain_mut(|(_, to)| f(to)),
             Step::Fold(fold) => fold.results.retain_mut(|(_, to)| f(to)),
+        }
+    }
+}
+
+/// Leaves out targets that nobody wants.
+fn retain(to: &mut [Option<Register>], mut f: impl FnMut(&mut Register) -> bool) {
+    for to in to {
+        if to.as_mut().is_some_and(|register| !f(register)) {
+            *to = None;
         }
     }
 }
@@ -208,6 +229,7 @@ impl Plan {
         graph: &Graph,
         request: &Request,
         textures: &[Texture],
+        fuse: &mut dyn Fuse,
     ) -> Result<Plan, RenderError> {
         let plan = Plan {
             functions: Vec::with_capacity(graph.functions.len()),
@@ -216,6 +238,6 @@ impl Plan {
             inputs: Vec::new(),
             output: None,
         };
-        Planner::new(pass, graph, request, textures, plan).finish()
+        Planner::new(pass, graph, request, textures, plan, fuse).finish()
     }
 }

@@ -13,6 +13,7 @@ mod fold;
 mod memory;
 mod step;
 
+use super::fused::MOST_OUTPUTS;
 use super::mask::{Mask, mask_of};
 use super::plan::{Call, Planned, Register, Step};
 use super::sample::Sampler;
@@ -48,6 +49,8 @@ pub struct Machine {
     result: Box<Lanes>,
     /// The same for whole vectors, ...
     vector: Box<[Lanes; 4]>,
+    /// ... for the outputs of a fused row ...
+    fused: [Box<Lanes>; MOST_OUTPUTS],
     /// ... and for the next accumulators of a fold.
     next: Vec<Lanes>,
     sampler: Box<Sampler>,
@@ -85,6 +88,7 @@ impl Default for Machine {
             outside: Vec::new(),
             result: Box::new(ZERO),
             vector: Box::new([ZERO; 4]),
+            fused: std::array::from_fn(|_| Box::new(ZERO)),
             next: Vec::new(),
             sampler: Box::default(),
         }

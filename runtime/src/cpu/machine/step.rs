@@ -1,5 +1,6 @@
 //! The steps that begin nothing: each a loop over the lanes.
 
+use super::super::fused::MOST_ARGUMENTS;
 use super::super::mask::{choose, lanes_of};
 use super::super::plan::{Components, Register, Step, Targets};
 use super::{Code, Machine};
@@ -13,7 +14,7 @@ impl Machine {
         let lanes = |register: Register| memory.read(code.known, base, register);
         let texture = |view: Register| code.textures.get(lanes(view)[0] as usize);
         match step {
-            Step::Each { one, all, arguments, to } => {
+            Step::Each { row: _, one, all, arguments, to } => {
                 let arguments = arguments.map(lanes);
                 if self.few {
                     for i in lanes_of(self.mask) {
@@ -34,9 +35,21 @@ impl Machine {
                 }
                 self.put(base, *to);
             }
-            Step::Whole { all, width, arguments, to } => {
+            Step::Whole { row: _, all, width, arguments, to } => {
                 all(*width, arguments.map(|argument: Components| argument.map(lanes)), &mut self.vector);
                 self.put_vector(base, to);
+            }
+            Step::Fused(fused) => {
+                let mut arguments = [&ZERO; MOST_ARGUMENTS];
+                for (to, from) in arguments.iter_mut().zip(&fused.arguments) {
+                    *to = lanes(*from);
+                }
+                (fused.row.run)(&arguments, self.mask, &mut self.fused);
+                for (to, lanes) in fused.to.iter().zip(&mut self.fused) {
+                    if let Some(Register::Frame(n)) = to {
+                        self.memory.put(base + *n as usize, lanes);
+                    }
+                }
             }
             Step::Lookup { table, index, to } => {
                 look_up(table, lanes(*index), &mut self.vector);

@@ -10,7 +10,16 @@ const MOST_STEPS: usize = 256;
 /// ... and the most that a function may come to by that.
 const MOST_TOGETHER: usize = 8192;
 /// The most steps that a fold may come to.
-const MOST_OF_A_FOLD: usize = 1024;
+const MOST_OF_A_FOLD: usize = 2048;
+
+/// A function's steps, if callers are to take it over.
+#[derive(Default)]
+pub struct Bodies {
+    /// As planned of arithmetic alone, if it may be one step or part of one, ...
+    pub plain: Option<Body>,
+    /// ... and as it came out.
+    pub fused: Option<Body>,
+}
 
 /// A function's steps before they share registers: each register has one value.
 pub struct Body {
@@ -55,9 +64,15 @@ impl Places {
 }
 
 impl Planner<'_> {
+    /// What callers take over of a function.
+    fn body(&self, function: usize) -> Option<&Body> {
+        let bodies = self.bodies.get(function)?;
+        bodies.plain.as_ref().filter(|_| self.plain).or(bodies.fused.as_ref())
+    }
+
     /// Does a call's steps here; the outputs. None where the function is too long for that.
     pub(super) fn inlined(&mut self, function: usize, arguments: &[Register]) -> Option<Vec<Register>> {
-        let body = self.bodies.get(function)?.as_ref()?;
+        let body = self.body(function)?;
         if self.planned.steps.len() + body.steps.len() > MOST_TOGETHER {
             return None;
         }
@@ -74,7 +89,7 @@ impl Planner<'_> {
     /// their number is not known, or too large for that.
     pub(super) fn unrolled(&mut self, fold: &Loop) -> Option<Vec<Register>> {
         let steps = u32::try_from(self.bits(fold.steps)? as i32).unwrap_or(0).min(fold.most);
-        let body = self.bodies.get(fold.body)?.as_ref()?;
+        let body = self.body(fold.body)?;
         let together = body.steps.len().saturating_mul(steps as usize);
         if together > MOST_OF_A_FOLD || self.planned.steps.len() + together > MOST_TOGETHER {
             return None;

@@ -14,10 +14,11 @@ use super::registers::allocate;
 use super::texture::Texture;
 use crate::pass::Pass;
 use crate::render::{RenderError, Request};
-use inline::Body;
+use inline::{Bodies, Body};
 use std::collections::HashMap;
 use texgraph_compiler::graph::regions::{Branch, Region, Regions, Weights};
 use texgraph_compiler::graph::{Function, FunctionId, Graph, Operation, Scalar, Type, Value};
+use texgraph_compiler::intrinsic::Lanes;
 
 /// The most operations a pixel.
 const MAX_OPERATIONS: u64 = 1_000_000_000;
@@ -41,6 +42,17 @@ enum State {
     Outputs(Vec<Register>),
 }
 
+/// What makes one step of whole functions.
+pub trait Fuse {
+    /// Whether functions of that name may become a step. They are planned of arithmetic alone if they
+    /// can be: with the steps of what they call, though that may be one step by itself.
+    fn knows(&self, name: &str) -> bool;
+
+    /// Makes one step of a planned function if it can; whether it has. `registers` are those that the
+    /// function has, none shared yet.
+    fn fuse(&mut self, name: &str, planned: &mut Planned, known: &[Lanes], registers: &mut usize) -> bool;
+}
+
 /// Plans a graph.
 pub struct Planner<'a> {
     pass: &'a Pass<'a>,
@@ -48,11 +60,14 @@ pub struct Planner<'a> {
     request: &'a Request,
     textures: &'a [Texture],
     plan: Plan,
+    fuse: &'a mut dyn Fuse,
     /// The known register of some bits.
     numbers: HashMap<u32, Register>,
     machine: Machine,
     /// Of each function that callers take over.
-    bodies: Vec<Option<Body>>,
+    bodies: Vec<Bodies>,
+    /// Whether the function being planned is to be of arithmetic alone.
+    plain: bool,
     /// Of the function being planned.
     states: Vec<State>,
     planned: Planned,
@@ -70,6 +85,7 @@ impl<'a> Planner<'a> {
         request: &'a Request,
         textures: &'a [Texture],
         plan: Plan,
+        fuse: &'a mut dyn Fuse,
     ) -> Planner<'a> {
         Planner {
             pass,
@@ -77,9 +93,11 @@ impl<'a> Planner<'a> {
             request,
             textures,
             plan,
+            fuse,
             numbers: [(0, Register::ZERO)].into(),
             machine: Machine::default(),
             bodies: Vec::new(),
+            plain: false,
             states: Vec::new(),
             planned: Planned::default(),
             registers: 0,
@@ -100,10 +118,34 @@ impl<'a> Planner<'a> {
                 bodies.get_mut(fold.body.0 as usize).into_iter().for_each(|is_body| *is_body = true);
             }
         }
+        let plain = self.plain_functions();
         for (id, function) in graph.functions.iter().enumerate() {
-            self.function(id, function, &weights, bodies[id])?;
+            self.function(id, function, &weights, bodies[id], plain[id])?;
         }
         Ok(self.plan)
+    }
+
+    /// Which functions may become one step, or what they run.
+    fn plain_functions(&self) -> Vec<bool> {
+        let functions = &self.graph.functions;
+        let mut plain: Vec<bool> = functions.iter().map(|function| self.fuse.knows(&function.name)).collect();
+        // Callees stand before callers.
+        for (id, function) in functions.iter().enumerate().rev() {
+            if !plain[id] || id == self.plan.entry {
+                continue;
+            }
+            for operation in &function.values {
+                let callees = match operation {
+                    Operation::Call(callee, _) => [Some(*callee), None],
+                    Operation::Fold(fold) => [Some(fold.body), fold.condition],
+                    _ => [None, None],
+                };
+                for callee in callees.into_iter().flatten() {
+                    plain[callee.0 as usize] = true;
+                }
+            }
+        }
+        plain
     }
 
     fn function(
@@ -112,11 +154,44 @@ impl<'a> Planner<'a> {
         function: &'a Function,
         weights: &Weights,
         is_body: bool,
+        is_plain: bool,
+    ) -> Result<(), RenderError> {
+        let is_entry = id == self.plan.entry;
+        let mut bodies = Bodies::default();
+        self.plain = is_plain && !is_entry;
+        self.steps(function, weights, is_entry)?;
+        if self.plain {
+            bodies.plain = Body::of(&self.planned, self.registers);
+            let (known, registers) = (&self.plan.known, &mut self.registers);
+            if !self.fuse.knows(&function.name)
+                || !self.fuse.fuse(&function.name, &mut self.planned, known, registers)
+            {
+                self.plain = false;
+                self.steps(function, weights, is_entry)?;
+            }
+        }
+        bodies.fused = Body::of(&self.planned, self.registers);
+        self.bodies.push(bodies);
+        let pinned = if is_body { self.planned.inputs + 1 } else { 0 };
+        allocate(&mut self.planned, self.registers, pinned);
+        if is_entry {
+            self.plan.output = function.outputs.first().and_then(|(slot, _)| self.drawn(slot.ty));
+        }
+        self.plan.functions.push(std::mem::take(&mut self.planned));
+        Ok(())
+    }
+
+    /// Plans the steps of a function, each with registers of its own.
+    fn steps(
+        &mut self,
+        function: &'a Function,
+        weights: &Weights,
+        is_entry: bool,
     ) -> Result<(), RenderError> {
         self.states = vec![State::Absent; function.values.len()];
         self.work = 0;
         self.planned = Planned::default();
-        if id == self.plan.entry {
+        if is_entry {
             self.entry_inputs(function);
         } else {
             self.inputs(function);
@@ -130,13 +205,6 @@ impl<'a> Planner<'a> {
             let components = self.components(*value);
             self.planned.outputs.extend(components.iter().take(usize::from(function.ty(*value).width())));
         }
-        self.bodies.push(Body::of(&self.planned, self.registers));
-        let pinned = if is_body { self.planned.inputs + 1 } else { 0 };
-        allocate(&mut self.planned, self.registers, pinned);
-        if id == self.plan.entry {
-            self.plan.output = function.outputs.first().and_then(|(slot, _)| self.drawn(slot.ty));
-        }
-        self.plan.functions.push(std::mem::take(&mut self.planned));
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use super::known::constant;
 use super::{Planner, State, bound};
 use crate::render::RenderError;
 use texgraph_compiler::graph::{Fold, Function, Level, Operation, ParamId, Value};
-use texgraph_compiler::intrinsic::{Evaluate, Intrinsic};
+use texgraph_compiler::intrinsic::{Evaluate, Intrinsic, MULTIPLY};
 
 impl Planner<'_> {
     pub(super) fn param(&mut self, id: ParamId) -> Components {
@@ -27,21 +27,33 @@ impl Planner<'_> {
         let vectors = [0, 1, 2].map(argument);
         let first = arguments.first().map_or(1, |first| usize::from(function.ty(*first).width()));
         match intrinsic.row().value {
-            Evaluate::Each { scalar: _, one, all } => {
+            Evaluate::Each { one, all, .. } => {
                 let mut components = [Register::ZERO; 4];
                 for (c, component) in components.iter_mut().enumerate().take(width) {
-                    let to = self.fresh();
                     let arguments = vectors.map(|vector| vector[c]);
-                    [*component] = self.push(Step::Each { one, all, arguments, to }, [to]);
+                    if intrinsic == MULTIPLY
+                        && let Some(same) = self.times_one(arguments)
+                    {
+                        *component = same;
+                        continue;
+                    }
+                    let to = self.fresh();
+                    [*component] = self.push(Step::Each { row: intrinsic, one, all, arguments, to }, [to]);
                 }
                 components
             }
-            Evaluate::Whole { one: _, all } => {
+            Evaluate::Whole { all, .. } => {
                 let (to, results) = self.targets(width);
                 let arguments = Box::new([vectors[0], vectors[1]]);
-                self.push(Step::Whole { all, width: first, arguments, to }, results)
+                self.push(Step::Whole { row: intrinsic, all, width: first, arguments, to }, results)
             }
         }
+    }
+
+    /// A product with 1.
+    fn times_one(&self, [a, b, _]: [Register; 3]) -> Option<Register> {
+        let is_one = |register| self.bits(register) == Some(1f32.to_bits());
+        if is_one(b) { Some(a) } else { is_one(a).then_some(b) }
     }
 
     pub(super) fn select(&mut self, condition: Value, yes: Value, no: Value, width: usize) -> Components {
