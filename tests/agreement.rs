@@ -42,7 +42,6 @@ const GROUND: [u32; 2] = [256, 256];
 /// Where a software adapter's own level of detail is off by so much that it shows (docs/quality.md). The
 /// same graph with the levels worked out in the shader agrees as all others do, which is tested here.
 const LISTED: &[&str] = &[
-    "examples/landscape.tex:landscape::flat, color",
     "examples/signboard.tex:signboard::flat, color",
     "examples/stamps.tex:stamps::ground, color",
     "examples/terrain.tex:terrain::flat, color",

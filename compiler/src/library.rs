@@ -15,6 +15,7 @@ use texgraph_grammar::syntax::{ItemKind, Signature};
 /// The files, one per technique.
 const FILES: &[(&str, &str)] = &[
     ("std/tiling.tex", include_str!("../std/tiling.tex")),
+    ("std/strips.tex", include_str!("../std/strips.tex")),
     ("std/volumes.tex", include_str!("../std/volumes.tex")),
     ("std/draws.tex", include_str!("../std/draws.tex")),
     ("std/placing.tex", include_str!("../std/placing.tex")),

@@ -6,12 +6,14 @@
 
 use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, FunctionId, Scalar, Texel, View, ViewDimension};
-use crate::manifest::{Encoding, Filter, Format, IndicesSource, Recipe, Space, Stop, Wrap};
+use crate::manifest::{Encoding, Filter, Format, Recipe, Space, Stop, Wrap};
 
+mod indices;
 mod materials;
 pub mod pixel_map;
 mod positions;
 mod probability;
+mod strips;
 mod volumes;
 
 /// A resource of a program: one constructor call.
@@ -47,7 +49,7 @@ pub struct Kind {
     /// The constructor's and the type's name.
     pub name: &'static str,
     /// What the constructor takes. Besides the language's types: `text`, `texts` (one string or a
-    /// list of them), `cells` (a string or rows of ints), `numbers` (a list of them), `resources`
+    /// list of them), `cells` (a string or rows of ints), `row` (a string or a list of ints), `numbers` (a list of them), `resources`
     /// (a list of them) and `stops` (lists of a place and a colour, any number of them one after the
     /// other).
     pub constructor: &'static str,
@@ -96,6 +98,9 @@ pub enum FieldKind {
     /// kind's fields are those of the same name (constants need not be fields here), but for its
     /// `count`, which is named here. There is none where that is 0.
     As(&'static str, &'static str),
+    /// The size of a map of another dimension than the plane: across in texels of a view, by its name,
+    /// on a line; in space also down, and as deep as a constant says, by its name.
+    Size(&'static str, Option<&'static str>),
     /// A colour that is read: the texel of the first row of a view, at a constant; both by name.
     Texel(&'static str, &'static str),
 }
@@ -106,7 +111,7 @@ impl FieldKind {
         match self {
             FieldKind::View(view) | FieldKind::Lent(view) => Some(view),
             FieldKind::Row => Some(SHARED),
-            FieldKind::Constant | FieldKind::Texel(..) | FieldKind::As(..) => None,
+            FieldKind::Constant | FieldKind::Size(..) | FieldKind::Texel(..) | FieldKind::As(..) => None,
         }
     }
 }
@@ -326,6 +331,25 @@ pub static KINDS: &[Kind] = &[
         make: make_patterns,
     },
     Kind {
+        name: "patterns<1>",
+        constructor: "(paths: texts, grid: ivec2 = 1, encoding: srgb | linear | normal = srgb, \
+                      filter: linear | nearest = linear) -> patterns",
+        doc: "Interchangeable strips, a row of texels and a layer each with its own mip levels.",
+        gives: None,
+        fields: &[
+            Field { name: "layers", kind: FieldKind::View(LAYERS) },
+            Field { name: "means", kind: FieldKind::View(PIXELS) },
+            Field { name: "average", kind: FieldKind::Texel("means", "count") },
+            Field { name: "strips", kind: FieldKind::As("patterns", "count") },
+            Field { name: "count", kind: FieldKind::Constant },
+            Field { name: "linear", kind: FieldKind::Constant },
+            Field { name: "taps", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: strips::make,
+    },
+    Kind {
         name: "patterns<3>",
         constructor: "(paths: texts, depth: int, grid: ivec2 = 1, encoding: srgb | linear | normal = srgb, \
                       filter: linear | nearest = linear) -> patterns",
@@ -409,7 +433,34 @@ pub static KINDS: &[Kind] = &[
             Field { name: "levels", kind: FieldKind::Constant },
         ],
         view: Some("map"),
-        make: make_indices,
+        make: indices::in_the_plane,
+    },
+    Kind {
+        name: "indices<1>",
+        constructor: "(cells: row, levels: int = 256) -> indices",
+        doc: "A row of integers, which wraps.",
+        gives: None,
+        fields: &[
+            Field { name: "map", kind: FieldKind::View(INTEGERS) },
+            Field { name: "size", kind: FieldKind::Size("map", None) },
+            Field { name: "levels", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: indices::on_a_line,
+    },
+    Kind {
+        name: "indices<3>",
+        constructor: "(cells: cells, depth: int, levels: int = 256) -> indices",
+        doc: "An integer map of slices, a layer each, which wraps.",
+        gives: None,
+        fields: &[
+            Field { name: "map", kind: FieldKind::View(MAPS) },
+            Field { name: "size", kind: FieldKind::Size("map", Some("depth")) },
+            Field { name: "depth", kind: FieldKind::Constant },
+            Field { name: "levels", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: indices::in_space,
     },
     Kind {
         name: "positions",
@@ -623,29 +674,4 @@ fn make_permutation(a: &Arguments) -> Result<Made, Diagnostic> {
         sampler: None,
         lender: None,
     })
-}
-
-fn make_indices(a: &Arguments) -> Result<Made, Diagnostic> {
-    let levels = a.count("levels", 1, 65536)?;
-    let source = match a.get("cells") {
-        Some((Argument::Rows(rows), place)) => IndicesSource::Rows(checked_rows(rows, levels, place)?),
-        _ => IndicesSource::Path(a.paths("cells").into_iter().next().unwrap_or_default()),
-    };
-    Ok(Made {
-        recipe: Recipe::Indices { source, levels },
-        constants: vec![("levels", Constant::ints(&[levels as i32]))],
-        sampler: None,
-        lender: None,
-    })
-}
-
-fn checked_rows(rows: &[Vec<i32>], levels: u32, place: Place) -> Result<Vec<Vec<i32>>, Diagnostic> {
-    let width = rows.first().map_or(0, Vec::len);
-    if width == 0 || rows.iter().any(|row| row.len() != width) {
-        return Err(constructors::ragged_rows(place));
-    }
-    match rows.iter().flatten().find(|i| !(0..levels as i32).contains(*i)) {
-        Some(i) => Err(constructors::out_of_bounds(place, "cell", *i, 0, levels as i32 - 1)),
-        None => Ok(rows.to_vec()),
-    }
 }

@@ -307,6 +307,43 @@ fn rows_of_numbers_are_checked() {
 }
 
 #[test]
+fn a_map_on_a_line_is_a_row_and_one_in_space_a_layer_a_slice() {
+    let folder = folder();
+    write_picture(
+        &folder.path().join("a.png"),
+        [2, 6],
+        &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11].map(|i| i * 20),
+    );
+    let path = || IndicesSource::Path("a.png".into());
+    let stack = |source, depth| Recipe::Stack { source, levels: 256, depth };
+    let (table, bytes) = made(folder.path(), stack(path(), 3));
+    assert_eq!((table.width, table.height, table.layers, table.levels.len()), (2, 2, 3, 1));
+    assert_eq!(integers(&bytes), [0, 20, 40, 60, 80, 100, 120, 140, 160, 180, 200, 220]);
+    let rows = |rows: &[&[i32]]| IndicesSource::Rows(rows.iter().map(|row| row.to_vec()).collect());
+    let (table, bytes) = made(folder.path(), stack(rows(&[&[1, 2, 3], &[4, 5, 6]]), 2));
+    assert_eq!((table.width, table.height, table.layers), (3, 1, 2));
+    assert_eq!(integers(&bytes), [1, 2, 3, 4, 5, 6]);
+    let line = |source| Recipe::Line { source, levels: 256 };
+    let (table, bytes) = made(folder.path(), line(rows(&[&[1, 0, 2]])));
+    assert_eq!((table.width, table.height, table.layers), (3, 1, 1));
+    assert_eq!(integers(&bytes), [1, 0, 2]);
+    let wrong = vec![stack(path(), 4), line(path()), line(rows(&[&[1], &[2]])), stack(path(), 0)];
+    assert_eq!(codes(folder.path(), wrong), ["E0507", "E0507", "E0507", "E0554"]);
+}
+
+#[test]
+fn a_pattern_on_a_line_is_one_texel_high() {
+    let folder = folder();
+    write_picture(&folder.path().join("a.png"), [4, 2], &[0, 40, 80, 120, 10, 20, 30, 40]);
+    let strips = |grid| Recipe::Strips { paths: vec!["a.png".into()], grid, encoding: Encoding::Linear };
+    let (table, bytes) = made(folder.path(), strips([2, 2]));
+    assert_eq!((table.width, table.height, table.layers, table.levels.len()), (2, 1, 4, 2));
+    let first: Vec<u8> = bytes.iter().copied().step_by(4).collect();
+    assert_eq!(first, [0, 40, 80, 120, 10, 20, 30, 40, 20, 100, 15, 35]);
+    assert_eq!(codes(folder.path(), vec![strips([2, 1])]), ["E0507"]);
+}
+
+#[test]
 fn the_number_of_threads_changes_nothing() {
     let folder = folder();
     let samples: Vec<u8> = (0..97 * 61 * 4).map(|i| (i * 31 % 256) as u8).collect();

@@ -320,11 +320,12 @@ fn head(
 
 /// A type that we know to give.
 fn takes(ty: &syntax::Type) -> Option<Takes> {
-    let TypeKind::Named { name, .. } = &ty.kind else { return None };
+    let TypeKind::Named { name, dim } = &ty.kind else { return None };
     if let Some(size) = name.text.strip_prefix("mat") {
         return size.parse().ok().map(Takes::Matrix);
     }
-    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == name.text);
+    // Resources are all of the plane.
+    let kind = Kind::ALL.into_iter().find(|kind| dim.is_none() && kind.name() == name.text);
     kind.map(Takes::Resource).or_else(|| value(ty).map(Takes::Value))
 }
 

@@ -371,3 +371,32 @@ fn corners_are_the_areas_of_four_cells() {
         assert!(corners.iter().any(|corners| corners[0] != corners[3]), "areas differ");
     }
 }
+
+/// Maps on a line and in space say what stands in a cell as those in the plane do: they wrap, and a
+/// `base` takes them as far as one likes.
+#[test]
+fn maps_of_any_dimension_say_what_stands_in_a_cell() {
+    let maps = "let line = indices<1>([2, 0, 1])
+         let plane = indices([[2, 0, 1]])
+         let space = indices<3>([[2, 0, 1], [3, 4, 5], [6, 7, 8], [9, 10, 11]], depth: 2)\n";
+    let seen = |body: &str| {
+        Drawing::of(&format!("{maps}texture t(uv: vec2) -> (seen: vec4) {{ {body} }}")).cells(24)
+    };
+    let far = "tile_map(uv.x, 24, base: 1000000)";
+    let line = seen(&format!("let (cell, at) = {far} seen = vec4(line.at(cell - 5))"));
+    let plane = seen(&format!("let (cell, at) = {far} seen = vec4(plane.at(ivec2(cell - 5, 0)))"));
+    assert_eq!(line, plane);
+    let space = seen(
+        "let (cell, at) = tile_map(vec3(uv, uv.x + uv.y), 24, base: ivec3(7, -5, 3))
+         seen = vec4(space.at(cell), cell % space.size)",
+    );
+    let wanted = [[[2, 0, 1], [3, 4, 5]], [[6, 7, 8], [9, 10, 11]]];
+    for [index, x, y, z] in space.into_iter().map(|pixel| pixel.map(|i| i as usize)) {
+        assert_eq!(index, wanted[z][y][x], "{x} {y} {z}");
+    }
+    assert_eq!(seen("seen = vec4(space.size, line.size)")[0], [3.0, 2.0, 2.0, 3.0]);
+    // Areas of such maps are dithered by the nodes that take a lambda.
+    let dithered = "float(dithered_area(|c| MAP, ifloor(uv.x * 24.0), 24, line.size))";
+    let by = |map: &str| seen(&format!("seen = vec4({})", dithered.replace("MAP", map)));
+    assert_eq!(by("line.at(c)"), by("plane.at(ivec2(c, 0))"));
+}

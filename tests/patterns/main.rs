@@ -16,6 +16,7 @@ mod shapes;
 mod space;
 mod splat;
 mod streams;
+mod strips;
 mod support;
 mod surface;
 mod transition;

@@ -186,3 +186,105 @@ fn what_a_node_draws_is_whole_in_one_two_and_three_dimensions() {
         assert!(over > 0.5 * found[3] && over < 1.2 * found[3], "{n}: {over}");
     }
 }
+
+/// What a symmetry of the square makes of a place: quarter turns, then a mirror image before them.
+fn turned(symmetry: usize, at: [f32; 2]) -> [f32; 2] {
+    let [x, y] = if symmetry >= 4 { [1.0 - at[0], at[1]] } else { at };
+    (0..symmetry % 4).fold([x, y], |[x, y], _| [y, 1.0 - x])
+}
+
+/// Each cell shows one of the symmetries about the third axis, all of them as often, and the one that
+/// its vectors have; up stays up.
+#[test]
+fn blocks_are_turned_and_mirrored_about_the_third_axis() {
+    let folder = folder();
+    let side = 64;
+    let tiles = |call: &str, at: [f32; 3]| {
+        let body = format!(
+            "let cell = ivec3(ifloor(uv * {side}.0), 5)
+             let at = vec3({:?}, {:?}, {:?}) + vec3(uv, 0.0) * 0.000001
+             seen = {call}",
+            at[0], at[1], at[2]
+        );
+        seen(&folder, &body, side)
+    };
+    let at = [0.3, 0.2, 0.7];
+    for (orient, symmetries) in [(4, 4), (8, 8)] {
+        for edges in ["blend", "clamp"] {
+            let found =
+                tiles(&format!("blocks.tiled(cell, at, |c| 1, edges: {edges}, orient: {orient})"), at);
+            let all: Vec<[f32; 4]> = (0..symmetries)
+                .map(|symmetry| {
+                    let [x, y] = turned(symmetry, [at[0], at[1]]);
+                    tiles("blocks.reference(1, at)", [x, y, at[2]])[0]
+                })
+                .collect();
+            let mut counts = vec![0; symmetries];
+            for pixel in &found {
+                let nearest = all.iter().position(|one| difference(&[*one], &[*pixel]) < 0.001);
+                counts[nearest.expect("it is one of them")] += 1;
+            }
+            for count in counts {
+                let off = crate::support::deviations(count, found.len(), 1.0 / symmetries as f64);
+                assert!(off < 4.9, "{edges}, {orient}: {count} of {}", found.len());
+            }
+        }
+    }
+    let plain = tiles("blocks.tiled(cell, at, |c| 1)", at);
+    assert!(difference(&plain, &tiles("blocks.tiled(cell, at, |c| 1, orient: 1, stream: 3)", at)) == 0.0);
+}
+
+/// Vectors of a block that all point along x turn with it.
+#[test]
+fn vectors_of_blocks_turn_with_them() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = image::RgbImage::from_pixel(8, 32, image::Rgb([255, 128, 128]));
+    picture.save(folder.path().join("slices.png")).expect("a picture is written");
+    let text = "let blocks = patterns<3>(\"slices.png\", grid: ivec2(1, 4), depth: 4, encoding: normal)
+         texture t(uv: vec2) -> (seen: vec4) {
+             let cell = ivec3(ifloor(uv * 16.0), 2)
+             seen = blocks.tiled(cell, vec3(0.5 + uv * 0.000001, 0.5), |c| 0, orient: 8)
+         }";
+    let seen = Drawing::beside(folder.path(), text).seen([16; 2], [0.0, 0.0, 1.0, 1.0]);
+    let mut ways = [0; 4];
+    for [x, y, z, _] in seen {
+        let way = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]
+            .iter()
+            .position(|way: &[f32; 2]| (way[0] - x).abs() < 0.01 && (way[1] - y).abs() < 0.01);
+        ways[way.unwrap_or_else(|| panic!("{x} {y} {z}"))] += 1;
+        assert!(z.abs() < 0.01, "up stays up: {z}");
+    }
+    assert!(ways.iter().all(|count| *count > 30), "{ways:?}");
+}
+
+/// Blocks that turn are still joined: of blocks all sides of which are alike no face is seen.
+#[test]
+fn turned_blocks_blend_into_their_neighbours() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let picture = image::RgbImage::from_fn(8, 64, |x, y| {
+        let (y, z) = (y % 8, y / 8);
+        let is_inside = (1..7).contains(&x) && (1..7).contains(&y) && (1..7).contains(&z);
+        let noise = (x * 64 + y * 8 + z).wrapping_mul(0x9e37_79b1).to_be_bytes();
+        image::Rgb(if is_inside { [noise[0], noise[1], noise[2]] } else { [120, 60, 200] })
+    });
+    picture.save(folder.path().join("slices.png")).expect("a picture is written");
+    for way in ["vec3(1.0, 0.0, 0.0)", "vec3(0.0, 1.0, 0.0)", "vec3(0.0, 0.0, 1.0)"] {
+        for footprint in ["0.001", "0.2", "0.8"] {
+            let text = format!(
+                "let blocks = patterns<3>(\"slices.png\", grid: ivec2(1, 8), depth: 8, encoding: linear)
+                 texture t(uv: vec2) -> (seen: vec4) {{
+                     let row  = ifloor(uv.y * 64.0)
+                     let way  = {way}
+                     let face = hash(row).xyz * 3.0 * (1.0 - way) + way * (1 + row % 3)
+                     let side = ifloor(uv.x * 2.0) * 2 - 1
+                     let p    = face + way * side * 0.00001 + vec3(fract(uv.x * 2.0) - 0.5, 0.0, 0.0) * 2.0 * {footprint}
+                     let (cell, at) = tile_map(p, 1)
+                     seen = blocks.tiled(cell, at, |c| 0, orient: 8)
+                 }}"
+            );
+            let pixels = Drawing::beside(folder.path(), &text).seen([2, 64], [0.0, 0.0, 1.0, 1.0]);
+            let worst = pixels.chunks(2).map(|pair| difference(&pair[..1], &pair[1..])).fold(0.0, f32::max);
+            assert!(worst < 0.01, "{way}, {footprint}: {worst}");
+        }
+    }
+}

@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
                         self.rows.extend(std::iter::repeat_n(resource as u32, rows));
                         views.push(self.shared_view());
                     }
-                    FieldKind::Constant | FieldKind::Texel(..) | FieldKind::As(..) => {}
+                    FieldKind::Constant | FieldKind::Size(..) | FieldKind::Texel(..) | FieldKind::As(..) => {}
                 }
             }
             self.resource_wires.push(ResourceFields { kind, views, constants });
@@ -166,6 +166,9 @@ impl<'a> Checker<'a> {
         if let Some(other) = seen_as(resource, name) {
             return Some(other);
         }
+        if let Some(size) = size_field(f, resource, name) {
+            return Some(size);
+        }
         if let Some(texel) = texel_field(f, resource, name) {
             return Some(texel);
         }
@@ -192,6 +195,19 @@ fn seen_as(resource: &ResourceWire, name: &str) -> Option<Wire> {
         views: fields.iter().filter_map(view).collect(),
         constants: std::iter::once(("count", count)).chain(others).collect(),
     })))
+}
+
+/// A field that is the size of a map.
+fn size_field(f: &mut Frame<'_>, resource: &ResourceWire, name: &str) -> Option<Wire> {
+    let field = KINDS[resource.kind].fields.iter().find(|field| field.name == name)?;
+    let FieldKind::Size(view, depth) = field.kind else { return None };
+    let (_, view) = resource.views.iter().find(|(known, _)| *known == view)?;
+    let size = f.builder.size(*view);
+    let across = f.builder.extract(size, 0);
+    let Some(depth) = depth else { return Some(Wire::Value(across)) };
+    let (_, depth) = resource.constants.iter().find(|(known, _)| *known == depth)?;
+    let parts = [across, f.builder.extract(size, 1), f.builder.constant(*depth)];
+    Some(Wire::Value(f.builder.compose(&parts)))
 }
 
 /// A field that is a texel of another field.
@@ -246,6 +262,12 @@ fn argument(
             let parts = items.iter().map(|(wire, at)| part(made, name, wire, *at));
             parts.collect::<Result<_, _>>().map(Argument::Resources)
         }
+        Wire::List(items) if is_named(input, "row") && items.is_empty() => {
+            Err(constructors::wrong_argument(place, name, ROW))
+        }
+        Wire::List(items) if is_named(input, "row") => {
+            ints(f, name, items, ROW).map(|row| Argument::Rows(vec![row]))
+        }
         Wire::List(items) if is_named(input, "texts") => texts(name, items, place),
         Wire::List(items) if is_named(input, STOPS) => {
             let stops = items.iter().map(|(wire, at)| stop(f, name, wire, *at));
@@ -290,6 +312,7 @@ fn stop(f: &Frame<'_>, input: &str, wire: &Wire, place: Place) -> Result<Stop, D
 
 const TEXTS: &str = "a string, or a list of strings";
 const NUMBERS: &str = "a list of numbers such as `[3, 1, 1]`";
+const ROW: &str = "a string, or a list of ints such as `[0, 1, 1]`";
 const ROWS: &str = "a string, or rows of ints such as `[[0, 1], [1, 0]]`";
 
 /// A list of strings.
@@ -340,21 +363,21 @@ fn rows(f: &Frame<'_>, input: &str, items: &[(Wire, Place)], place: Place) -> Re
         return Err(constructors::wrong_argument(place, input, ROWS));
     }
     let row = |(wire, at): &(Wire, Place)| match wire {
-        Wire::List(row) => ints(f, input, row),
+        Wire::List(row) => ints(f, input, row, ROWS),
         _ => Err(constructors::wrong_argument(*at, input, ROWS)),
     };
     items.iter().map(row).collect::<Result<_, _>>().map(Argument::Rows)
 }
 
-fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)]) -> Result<Vec<i32>, Diagnostic> {
+fn ints(f: &Frame<'_>, input: &str, row: &[(Wire, Place)], wanted: &str) -> Result<Vec<i32>, Diagnostic> {
     row.iter()
         .map(|(wire, at)| match wire {
             Wire::Value(value) => match f.builder.as_constant(*value) {
                 Some(c) if c.ty() == Type::Vector(Scalar::Int, 1) => Ok(c.int(0)),
-                Some(_) => Err(constructors::wrong_argument(*at, input, ROWS)),
+                Some(_) => Err(constructors::wrong_argument(*at, input, wanted)),
                 None => Err(constructors::not_known(*at, input)),
             },
-            _ => Err(constructors::wrong_argument(*at, input, ROWS)),
+            _ => Err(constructors::wrong_argument(*at, input, wanted)),
         })
         .collect()
 }

@@ -179,7 +179,7 @@ pub fn named_in(name: &str, dim: &Dim, dims: &Dims<'_>, place: Place) -> Result<
         return Err(types::unknown_type(place, &shown, Some(name.to_owned())));
     }
     let dimension = width_of(name, Some(dim), dims, place)?;
-    let unknown = || crate::diagnostic::unsupported::not_yet(place, &format!("`{name}<{dimension}>`"));
+    let unknown = || types::unknown_type(place, &format!("{name}<{dimension}>"), Some(format!("{name}<3>")));
     kind_named(name, Some(dimension)).ok_or_else(unknown)
 }
 
@@ -190,7 +190,7 @@ fn resolve_other(name: &str, place: Place) -> Result<Declared, Diagnostic> {
     match name {
         "text" => Ok(Declared::Text),
         "texts" => Ok(Declared::Texts),
-        "cells" => Ok(Declared::Cells),
+        "cells" | "row" => Ok(Declared::Cells),
         "stops" => Ok(Declared::Stops),
         "numbers" => Ok(Declared::Numbers),
         "resources" => Ok(Declared::Resources),

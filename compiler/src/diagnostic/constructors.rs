@@ -65,6 +65,17 @@ pub fn uneven_depth(place: Place, depth: u32, count: i64) -> Diagnostic {
     .help("`grid` counts the slices of all patterns, `depth` those of one")
 }
 
+/// Rows of a map that make no whole number of slices.
+pub fn uneven_slices(place: Place, depth: u32, rows: usize) -> Diagnostic {
+    Diagnostic::new(
+        "E0552",
+        place,
+        format!("{rows} rows are not {depth} slices of one height"),
+        format!("{} would be left over", rows % depth.max(1) as usize),
+    )
+    .help("the slices of a map in space stand one below another, each with as many rows")
+}
+
 /// Rows of different lengths, or none.
 pub fn ragged_rows(place: Place) -> Diagnostic {
     Diagnostic::new("E0555", place, "the rows of a map must have one length, at least 1", "this list")

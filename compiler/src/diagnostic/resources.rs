@@ -64,6 +64,41 @@ pub fn uneven_grid(place: Place, path: &str, size: [u32; 2], grid: [u32; 2]) -> 
     .help(format!("crop the picture to {}×{}, or change `grid`", fit(width, columns), fit(height, rows)))
 }
 
+/// Patterns on a line that are more than one texel high.
+pub fn cells_are_no_rows(place: Place, path: &str, cell: [u32; 2], grid: [u32; 2]) -> Diagnostic {
+    let [width, height] = cell;
+    Diagnostic::new(
+        "E0507",
+        place,
+        format!("the patterns of `{path}` have {width}×{height} texels"),
+        "a pattern on a line is one row of texels",
+    )
+    .help(format!("give every row a cell, `grid: ivec2({}, {})`", grid[0], grid[1] * height))
+}
+
+/// A map on a line that has more than one row.
+pub fn map_is_no_row(place: Place, path: &str, [width, height]: [u32; 2]) -> Diagnostic {
+    Diagnostic::new(
+        "E0507",
+        place,
+        format!("`{path}` has {width}×{height} texels"),
+        "a map on a line is one row of texels",
+    )
+    .help("crop the picture to its first row, or make it a map of the plane, `indices`")
+}
+
+/// A map whose slices have no whole number of rows.
+pub fn uneven_slices(place: Place, path: &str, [width, height]: [u32; 2], depth: u32) -> Diagnostic {
+    let fit = (height.max(depth) / depth.max(1)) * depth;
+    Diagnostic::new(
+        "E0507",
+        place,
+        format!("{depth} slices do not divide `{path}`, which has {width}×{height} texels"),
+        "every slice must have the same whole number of rows",
+    )
+    .help(format!("crop the picture to {width}×{fit}, or change `depth`"))
+}
+
 /// A map whose blocks would be cut off at its edges.
 pub fn uneven_blocks(place: Place, path: &str, size: [u32; 2], block: u32) -> Diagnostic {
     let [width, height] = size;

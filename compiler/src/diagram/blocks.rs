@@ -2,7 +2,7 @@
 
 use super::build::{Given, Maker, Value};
 use super::formula::Formula;
-use super::scope::{Callee, Head};
+use super::scope::{Callee, Head, callee_name};
 use super::text;
 use super::{End, Kind, Rate};
 use crate::check::order::{Free, value_of};
@@ -12,7 +12,7 @@ use texgraph_grammar::syntax::{Call, Expr, Fold, Name, Span, Statement};
 impl<'a> Maker<'a> {
     /// A block for a call.
     pub fn call(&mut self, call: &'a Call, module: usize, prefix: &str, receiver: Option<Formula>) -> Value {
-        let name = call.name.text.as_str();
+        let name = callee_name(call);
         let first = receiver.map(|receiver| self.received(receiver));
         let kind = first.as_ref().and_then(|(_, _, kind)| *kind);
         let head = self.head(module, name, kind);

@@ -1,7 +1,7 @@
 //! What files declare: resources, constants and params, each a block that is drawn once.
 
 use super::build::{Maker, Value};
-use super::scope::Callee;
+use super::scope::{Callee, callee_name};
 use super::text;
 use super::{End, Kind, Rate};
 use crate::check::order::Free;
@@ -58,8 +58,8 @@ impl<'a> Maker<'a> {
     /// The kind of resource that an expression makes.
     fn constructor(&self, module: usize, value: &'a Expr) -> Option<&'a str> {
         let ExprKind::Call(call) = &value.kind else { return None };
-        match self.scope.callee(module, &call.name.text, None) {
-            Callee::Block(head) if head.is_constructor => Some(&call.name.text),
+        match self.scope.callee(module, callee_name(call), None) {
+            Callee::Block(head) if head.is_constructor => Some(callee_name(call)),
             _ => None,
         }
     }

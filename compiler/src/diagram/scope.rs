@@ -3,9 +3,9 @@
 
 use crate::library::{Callable, Library};
 use crate::module::Module;
-use crate::resource::{KINDS, LATER};
+use crate::resource::{KINDS, LATER, dimension_of, kind_named};
 use rustc_hash::FxHashMap;
-use texgraph_grammar::syntax::{Input, Item, ItemKind, Node, TypeKind};
+use texgraph_grammar::syntax::{Call, Dim, Input, Item, ItemKind, Node, TypeKind};
 
 /// The program as a diagram sees it.
 pub struct Scope<'a> {
@@ -155,9 +155,10 @@ fn node_of(item: &Item) -> Option<&Node> {
 /// The head of the node that takes the receiver; of the first where that is not known. Of nodes that
 /// all take resources of other kinds nothing is known.
 fn head_of<'a>(nodes: &[&'a Node], receiver: Option<&str>) -> Head<'a> {
-    let first = |node: &&'a Node| node.inputs.first().and_then(type_name);
-    let taking = nodes.iter().find(|node| receiver.is_some() && first(node) == receiver);
-    let is_other = |node: &&'a Node| first(node).is_some_and(is_resource);
+    let taking = nodes.iter().find(|node| {
+        receiver.zip(node.inputs.first()).is_some_and(|(receiver, input)| takes(input, receiver))
+    });
+    let is_other = |node: &&'a Node| node.inputs.first().and_then(type_name).is_some_and(is_resource);
     if taking.is_none() && receiver.is_some() && nodes.iter().all(is_other) {
         return Head::default();
     }
@@ -178,10 +179,32 @@ fn names(inputs: &[Input]) -> Vec<&str> {
     inputs.iter().map(|input| input.name.text.as_str()).collect()
 }
 
-/// The name of an input's type, without its dimension.
+/// The name of an input's type, with its dimension where that is a part of a kind's name.
 pub fn type_name(input: &Input) -> Option<&str> {
     match &input.ty.kind {
-        TypeKind::Named { name, .. } => Some(&name.text),
+        TypeKind::Named { name, dim } => Some(full_name(&name.text, dim.as_ref())),
         _ => None,
+    }
+}
+
+/// The name of what is called, with its dimension where that is a part of a kind's name.
+pub fn callee_name(call: &Call) -> &str {
+    full_name(&call.name.text, call.dim.as_ref())
+}
+
+fn full_name<'a>(name: &'a str, dim: Option<&Dim>) -> &'a str {
+    let Some(Dim::Number(n, _)) = dim else { return name };
+    let kind = u8::try_from(*n).ok().and_then(|dimension| kind_named(name, Some(dimension)));
+    kind.map_or(name, |kind| KINDS[kind].name)
+}
+
+/// Whether an input takes resources of a kind; a dimension variable stands for any dimension.
+fn takes(input: &Input, kind: &str) -> bool {
+    match &input.ty.kind {
+        TypeKind::Named { name, dim: Some(Dim::Name(_)) } => {
+            let known = KINDS.iter().find(|known| known.name == kind);
+            known.map_or(kind, |known| dimension_of(known).0) == name.text
+        }
+        _ => type_name(input) == Some(kind),
     }
 }

@@ -82,6 +82,24 @@ fn basic_aperiodic_tiling_is_figure_16() {
 }
 
 #[test]
+fn resources_of_a_dimension_are_called_by_it() {
+    let diagram = draw(
+        "let bark = patterns<3>(\"b.png\", grid: ivec2(1, 8), depth: 4)\ntexture t(uv: vec2) -> (color: color) {\n    color = bark.tiled(ifloor(vec3(uv, bark.depth)), vec3(uv, 0.5), |c| 0) * steps.at(ifloor(uv.x)) + inside(bark, patterns<1>(\"d.png\"))\n}\nlet steps = indices<1>([0, 1])\nnode inside(p: patterns<3>, line: patterns<1>) -> (color: color) { color = p.average + line.average }\n",
+        None,
+    );
+    let found = wires(&diagram);
+    for wire in [
+        "bark.depth -> ifloor(vec3(uv, bark.depth)).bark.depth",
+        "bark.patterns<3> -> inside.p",
+        "bark.patterns<3> -> tiled.p",
+        "patterns<1>.patterns<1> -> inside.line",
+        "steps.indices<1> -> at.map",
+    ] {
+        assert!(found.iter().any(|known| known == wire), "{wire}: {found:#?}");
+    }
+}
+
+#[test]
 fn operators_and_functions_are_one_formula() {
     let diagram =
         texture("let a = 0.5 + sin(uv.x * 2.0) /* odd */ *  clamp(uv.y, 0.0, time)\n color = vec4(a)");

@@ -39,6 +39,17 @@ pub enum Recipe {
         /// How the numbers are read.
         encoding: Encoding,
     },
+    /// Patterns on a line, one layer each, one texel high. Fields `layers` and `means` are those of
+    /// [`Recipe::Patterns`].
+    Strips {
+        /// Picture files: one with `grid` cells, or one per pattern.
+        paths: Vec<String>,
+        /// Columns and rows of the one picture, as many rows as it has texels down; `[1, 1]` for a list
+        /// of files. Row by row.
+        grid: [u32; 2],
+        /// How the numbers are read.
+        encoding: Encoding,
+    },
     /// Patterns in space, one layer a slice: layer pattern·depth + slice of field `layers`, of which
     /// level l holds the mean of the slice's group of 2^l, the slices of a pattern being grouped from
     /// its first on (a group that is not full has the mean of what it has). Field `means`: the mean
@@ -91,6 +102,22 @@ pub enum Recipe {
         /// M: a picture's grey range is cut into M equal steps, numbered from 0 (black); numbers
         /// given as a list must be below it.
         levels: u32,
+    },
+    /// A row of integers. Field `map`, one texel high.
+    Line {
+        /// Where the integers come from: a picture of one row, or one row of numbers.
+        source: IndicesSource,
+        /// As of [`Recipe::Indices`].
+        levels: u32,
+    },
+    /// An integer map in space. Field `map`, a layer for each slice.
+    Stack {
+        /// Where the integers come from: the rows of all slices, one slice below another.
+        source: IndicesSource,
+        /// As of [`Recipe::Indices`].
+        levels: u32,
+        /// Slices, 1 to 256.
+        depth: u32,
     },
     /// A map of small numbers of which blocks of one number are not stored. Field `blocks`: a texel for
     /// each block, -1 - n where all of it is n, else the number i of its texels in field `pool`. There

@@ -1,38 +1,67 @@
 //! `indices`: a map of integers. Field `map`.
 //!
 //! A grey picture's range is cut into `levels` equal steps, numbered from 0 (black): with two
-//! levels and 8 bits, 0 to 127 is 0 and 128 to 255 is 1. A list of rows is taken as it is.
+//! levels and 8 bits, 0 to 127 is 0 and 128 to 255 is 1. A list of rows is taken as it is. On a line
+//! there is one row; in space the slices stand one below another, and each is a layer.
 
 use super::decode;
-use super::table::{MAX_SIDE, Made};
+use super::shape::Shape;
+use super::table::{MAX_LAYERS, MAX_SIDE, Made};
 use crate::project::Project;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
-use texgraph_compiler::manifest::{Format, IndicesSource};
+use texgraph_compiler::manifest::{Format, IndicesSource, Table};
 
 /// Makes the texture.
 ///
 /// # Errors
-/// The picture can't be read or has colours; rows are empty or of different lengths; a number is
-/// not in 0..levels; a side is too long.
+/// The picture can't be read or has colours; rows are empty or of different lengths, more than one on a
+/// line, or no whole number of slices in space; a number is not in 0..levels; a side is too long.
 pub fn make(
     project: &Project,
     place: Place,
     source: &IndicesSource,
     levels: u32,
+    shape: Shape,
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
-    let made = match source {
-        IndicesSource::Path(path) => of_picture(project, place, path, levels)?,
-        IndicesSource::Rows(rows) => of_rows(place, rows, levels)?,
+    let layout = |path: &str, size| layout(place, path, size, shape);
+    let (table, numbers) = match source {
+        IndicesSource::Path(path) => of_picture(project, place, path, levels, layout)?,
+        IndicesSource::Rows(rows) => of_rows(place, rows, levels, layout)?,
     };
-    Ok(vec![made])
+    // Slices one below another are layers one after the other.
+    Ok(vec![Made { field: "map", table, bytes: numbers.into_iter().flat_map(i32::to_le_bytes).collect() }])
 }
 
-fn of_picture(project: &Project, place: Place, path: &str, levels: u32) -> Result<Made, Vec<Diagnostic>> {
+/// How the numbers of so many columns and rows lie in a texture.
+fn layout(place: Place, path: &str, size: [u32; 2], shape: Shape) -> Result<Table, Vec<Diagnostic>> {
+    let [width, rows] = size;
+    let depth = shape.slices();
+    if shape == Shape::Line && rows > 1 {
+        return Err(vec![resources::map_is_no_row(place, path, size)]);
+    }
+    if !(1..=MAX_LAYERS).contains(&depth) {
+        return Err(vec![resources::too_many_layers(place, u64::from(depth), MAX_LAYERS)]);
+    }
+    if !rows.is_multiple_of(depth) {
+        return Err(vec![resources::uneven_slices(place, path, size, depth)]);
+    }
+    let slice = [width, rows / depth];
+    if slice.iter().any(|side| *side > MAX_SIDE) {
+        return Err(vec![resources::texture_too_large(place, path, slice, MAX_SIDE)]);
+    }
+    Ok(Table::with_levels(Format::R32Sint, slice, depth, 1))
+}
+
+fn of_picture(
+    project: &Project,
+    place: Place,
+    path: &str,
+    levels: u32,
+    layout: impl Fn(&str, [u32; 2]) -> Result<Table, Vec<Diagnostic>>,
+) -> Result<(Table, Vec<i32>), Vec<Diagnostic>> {
     let file = decode::open(project, path, place)?;
     let size = file.size;
-    if size.iter().any(|side| *side > MAX_SIDE) {
-        return Err(vec![resources::texture_too_large(place, path, size, MAX_SIDE)]);
-    }
+    let table = layout(path, size)?;
     let picture = file.decode()?;
     let codes = u64::from(picture.white()) + 1;
     let mut numbers = Vec::with_capacity(size[0] as usize * size[1] as usize);
@@ -45,18 +74,19 @@ fn of_picture(project: &Project, place: Place, path: &str, levels: u32) -> Resul
             numbers.push((u64::from(red) * u64::from(levels) / codes) as i32);
         }
     }
-    Ok(Made::integers("map", Format::R32Sint, size, numbers.into_iter()))
+    Ok((table, numbers))
 }
 
-fn of_rows(place: Place, rows: &[Vec<i32>], levels: u32) -> Result<Made, Vec<Diagnostic>> {
+fn of_rows(
+    place: Place,
+    rows: &[Vec<i32>],
+    levels: u32,
+    layout: impl Fn(&str, [u32; 2]) -> Result<Table, Vec<Diagnostic>>,
+) -> Result<(Table, Vec<i32>), Vec<Diagnostic>> {
     let width = rows.first().map_or(0, Vec::len);
     let refuse = |message: String, reason: String| Err(vec![resources::no_table(place, message, reason)]);
     if width == 0 {
         return refuse("the map has no numbers".into(), "at least one is needed".into());
-    }
-    if width.max(rows.len()) > MAX_SIDE as usize {
-        let size = [width, rows.len()].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-        return Err(vec![resources::texture_too_large(place, "this list", size, MAX_SIDE)]);
     }
     for (y, row) in rows.iter().enumerate() {
         if row.len() != width {
@@ -69,6 +99,6 @@ fn of_rows(place: Place, rows: &[Vec<i32>], levels: u32) -> Result<Made, Vec<Dia
             return refuse(message, "numbers are below `levels`".into());
         }
     }
-    let size = [width as u32, rows.len() as u32];
-    Ok(Made::integers("map", Format::R32Sint, size, rows.iter().flatten().copied()))
+    let size = [width, rows.len()].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    Ok((layout("this list", size)?, rows.iter().flatten().copied().collect()))
 }

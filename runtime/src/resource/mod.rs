@@ -17,6 +17,7 @@ mod probability;
 pub(crate) mod pyramid;
 mod ramp;
 mod resample;
+mod shape;
 pub(crate) mod table;
 mod tables;
 
@@ -26,6 +27,7 @@ pub(crate) use table::MAX_LAYERS;
 
 use crate::project::Project;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use shape::Shape;
 use std::sync::Arc;
 use table::Made;
 use texgraph_compiler::Program;
@@ -106,16 +108,23 @@ fn make(
     match recipe {
         Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
         Recipe::Patterns { paths, grid, encoding } => {
-            patterns::make(project, place, paths, *grid, None, *encoding)
+            patterns::make(project, place, paths, *grid, Shape::Plane, *encoding)
+        }
+        Recipe::Strips { paths, grid, encoding } => {
+            patterns::make(project, place, paths, *grid, Shape::Line, *encoding)
         }
         Recipe::Volumes { paths, grid, depth, encoding } => {
-            patterns::make(project, place, paths, *grid, Some(*depth), *encoding)
+            patterns::make(project, place, paths, *grid, Shape::Space { depth: *depth }, *encoding)
         }
         Recipe::Permutation { size, seed } => permutation::make(place, *size, *seed),
         // A row of the shared tables, and nothing of its own.
         Recipe::Probability { .. } => Ok(Vec::new()),
         Recipe::Materials { items, size, .. } => materials::make(project, place, items, *size, known),
-        Recipe::Indices { source, levels } => indices::make(project, place, source, *levels),
+        Recipe::Indices { source, levels } => indices::make(project, place, source, *levels, Shape::Plane),
+        Recipe::Line { source, levels } => indices::make(project, place, source, *levels, Shape::Line),
+        Recipe::Stack { source, levels, depth } => {
+            indices::make(project, place, source, *levels, Shape::Space { depth: *depth })
+        }
         Recipe::Positions { .. } => positions::make(project, place, recipe, known),
         Recipe::PixelMap { path, block, levels } => pixel_map::make(project, place, path, *block, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),

@@ -3,11 +3,12 @@
 //!
 //! Layers are what keeps a pattern's filter from reading its neighbour: the sub-textures that
 //! Lefebvre & Neyret 2003, §5.2, ask hardware for. They come from the cells of one picture, row by
-//! row, or from a list of files. In space (`patterns<3>`) a layer is a slice, and a smaller level of
+//! row, or from a list of files. On a line (`patterns<1>`) a layer is one texel high. In space (`patterns<3>`) a layer is a slice, and a smaller level of
 //! it the mean of a group of slices.
 
 use super::decode::{self, Decoded, PictureFile};
 use super::encoding::{self, Reader};
+use super::shape::Shape;
 use super::table::{self, Made};
 use super::{all, pyramid};
 use crate::project::Project;
@@ -17,22 +18,26 @@ use std::ops::Add;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
 use texgraph_compiler::manifest::{Encoding, Format, Table};
 
-/// Makes the textures: of one picture cut by `grid` (columns, rows), or of several pictures. In space
-/// a pattern consists of so many `slices`.
+/// Makes the textures: of one picture cut by `grid` (columns, rows), or of several pictures; cells are
+/// patterns, or in space the slices of patterns.
 ///
 /// # Errors
 /// All pictures that can't be read, or else a grid that does not divide the picture, sizes that
-/// differ, slices that make no whole number of patterns, or more than a texture may hold.
+/// differ, cells on a line that are no rows, slices that make no whole number of patterns, or more than
+/// a texture may hold.
 pub fn make(
     project: &Project,
     place: Place,
     paths: &[String],
     grid: [u32; 2],
-    slices: Option<u32>,
+    shape: Shape,
     encoding: Encoding,
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     let sheet = Sheet::open(project, place, paths, grid)?;
-    let depth = slices.unwrap_or(1);
+    if shape == Shape::Line && sheet.cell[1] > 1 {
+        return Err(vec![resources::cells_are_no_rows(place, sheet.path(), sheet.cell, grid)]);
+    }
+    let depth = shape.slices();
     if depth == 0 || !sheet.count.is_multiple_of(depth) {
         let message = format!("{} slices are no whole number of patterns of {depth}", sheet.count);
         return Err(vec![resources::no_table(place, message, "some are left over")]);
@@ -44,7 +49,10 @@ pub fn make(
     let readers: Vec<Reader<'_>> = pictures.iter().map(|picture| Reader::new(picture, encoding)).collect();
     let texel = |layer: u32, x: u32, y: u32| sheet.texel(&readers, layer, x, y);
     let blocks = sheet.count / depth;
-    let groups = slices.map_or_else(Vec::new, |depth| vec![depth; blocks as usize]);
+    let groups = match shape {
+        Shape::Line | Shape::Plane => Vec::new(),
+        Shape::Space { depth } => vec![depth; blocks as usize],
+    };
     Ok(vec![
         pyramid::build_blocks("layers", format, sheet.cell, [blocks, depth], texel),
         means(sheet.cell, sheet.count, &groups, texel),

@@ -80,14 +80,15 @@ pub fn manifest() -> Manifest {
 pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource {
     let (field, view, sample) = match &recipe {
         Recipe::Image { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
-        Recipe::Patterns { .. } | Recipe::Volumes { .. } => {
+        Recipe::Patterns { .. } | Recipe::Strips { .. } | Recipe::Volumes { .. } => {
             ("layers", ViewDimension::D2Array, SampleKind::Float)
         }
         Recipe::Permutation { .. } | Recipe::Probability { .. } => {
             ("table", ViewDimension::D2, SampleKind::Int)
         }
         Recipe::Materials { .. } => ("layers", ViewDimension::D2Array, SampleKind::Float),
-        Recipe::Indices { .. } => ("map", ViewDimension::D2, SampleKind::Int),
+        Recipe::Indices { .. } | Recipe::Line { .. } => ("map", ViewDimension::D2, SampleKind::Int),
+        Recipe::Stack { .. } => ("map", ViewDimension::D2Array, SampleKind::Int),
         Recipe::Tables { .. } => ("table", ViewDimension::D2, SampleKind::Int),
         Recipe::Positions { .. } => ("cells", ViewDimension::D2Array, SampleKind::Int),
         Recipe::PixelMap { .. } => ("blocks", ViewDimension::D2, SampleKind::Int),

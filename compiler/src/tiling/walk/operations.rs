@@ -145,9 +145,11 @@ impl<'a> Walk<'a> {
     pub(super) fn known_size(&self, view: ViewId, axis: u8) -> Option<u32> {
         match &self.resource(view)?.recipe {
             Recipe::Bake { size, .. } => size.get(usize::from(axis)).copied(),
-            Recipe::Indices { source: IndicesSource::Rows(rows), .. } => {
-                let size = if axis == 0 { rows.first().map_or(0, Vec::len) } else { rows.len() };
-                Some(size as u32)
+            Recipe::Indices { source, .. } | Recipe::Line { source, .. } => {
+                listed(source).map(|[width, rows]| if axis == 0 { width } else { rows })
+            }
+            Recipe::Stack { source, depth, .. } => {
+                listed(source).map(|[width, rows]| if axis == 0 { width } else { rows / depth })
             }
             _ => None,
         }
@@ -243,4 +245,12 @@ fn evaluated(intrinsic: Intrinsic, arguments: &[&[Shift]]) -> Option<Known> {
     Some(Known::Numbers(
         (0..usize::from(result.width())).map(|i| Shift::Known(result.component(i))).collect(),
     ))
+}
+
+/// The size of a map whose numbers stand in the file.
+fn listed(source: &IndicesSource) -> Option<[u32; 2]> {
+    match source {
+        IndicesSource::Rows(rows) => Some([rows.first().map_or(0, Vec::len) as u32, rows.len() as u32]),
+        IndicesSource::Path(_) => None,
+    }
 }
