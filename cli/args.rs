@@ -206,6 +206,10 @@ pub struct Build {
     /// of blending; in the complete form
     #[arg(long, value_name = "ALPHA", value_parser = alpha)]
     pub discard_below: Option<f32>,
+    /// Work every level of detail out in the shader, as `texgraph render` does, instead of leaving it to
+    /// the driver: the same picture on every adapter, for some more arithmetic
+    #[arg(long)]
+    pub exact_levels: bool,
     /// The format of the manifest
     #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
     pub manifest: ManifestFormat,

@@ -73,7 +73,7 @@ fn make(args: &Build, program: &Program<'_>, texture: Option<String>) -> Result<
         discard_below: args.discard_below,
         group: args.group.unwrap_or(group),
         first_binding: args.first_binding.unwrap_or(first_binding),
-        exact_levels: false,
+        exact_levels: args.exact_levels,
         profile,
         plane: None,
     };

@@ -180,7 +180,8 @@ impl Library {
         if progress.missed >= PATIENCE {
             progress.missed = 0;
             progress.made = progress.called.clone();
-            progress.ahead = Arc::new(check::ahead(self, &progress.made));
+            let (nodes, functions) = check::ahead(self, &progress.made);
+            progress.ahead = Arc::new(Ahead::of(nodes, functions));
         }
         Arc::clone(&progress.ahead)
     }

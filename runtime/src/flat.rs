@@ -60,6 +60,11 @@ impl Slope {
         self.right[i] == 0.0 && self.down[i] == 0.0
     }
 
+    /// Whether a component is the same in all places of a column.
+    pub fn is_constant_down(&self, i: usize) -> bool {
+        self.down[i] == 0.0
+    }
+
     /// Whether a component is the same in all places of a row.
     pub fn is_constant_across(&self, i: usize) -> bool {
         self.right[i] == 0.0

@@ -156,3 +156,24 @@ fn pixels_that_cover_too_little_are_discarded_where_a_host_tests_alpha() {
     shop.run(&["build", "two.tex", "--texture=first", "--discard-below=0.25"]).fails(2, "no output `color`");
     shop.run(&["build", "two.tex", "--texture=second", "--discard-below=2"]).fails(2, "from 0 to 1");
 }
+
+#[test]
+fn levels_can_be_worked_out_in_the_shader() {
+    let shop = Workshop::new(&[("photo.tex", PHOTO)]);
+    image::RgbImage::new(8, 8).save(shop.path("photo.png")).expect("a picture");
+    for (form, entry) in [("complete", "@fragment"), ("library", "fn "), ("functions", "fn ")] {
+        let form = format!("--form={form}");
+        assert!(shop.run(&["build", "photo.tex", &form]).is_silent());
+        assert!(shop.text("t.wgsl").contains("textureSampleGrad("));
+        assert!(shop.run(&["build", "photo.tex", &form, "--exact-levels"]).is_silent());
+        let exact = shop.text("t.wgsl");
+        assert!(exact.contains("textureSampleLevel(") && !exact.contains("textureSampleGrad("), "{exact}");
+        assert!(exact.contains(entry));
+    }
+}
+
+const PHOTO: &str = "texture t(uv: vec2) -> (color: color) {
+    let photo = image(\"photo.png\")
+    color = photo.sample(uv * 4.0)
+}
+";

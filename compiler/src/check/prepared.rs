@@ -33,8 +33,8 @@ impl Prepared {
     }
 }
 
-/// What of these modules of a library can be made ahead.
-pub fn ahead(library: &Library, modules: &BTreeSet<usize>) -> Ahead {
+/// The nodes of these modules of a library that can be made ahead, and the functions they are made of.
+pub fn ahead(library: &Library, modules: &BTreeSet<usize>) -> (Vec<(Key, Prepared)>, Vec<Function>) {
     let modules = modules.iter().filter_map(|i| Some((*i, library.modules().get(*i)?)));
     let items =
         modules.flat_map(|(i, module)| module.tree.items.iter().enumerate().map(move |item| (i, item)));
@@ -49,7 +49,7 @@ pub fn ahead(library: &Library, modules: &BTreeSet<usize>) -> Ahead {
     let made =
         calls.filter_map(|(module, item, node, width)| checker().made_alone(module, item, node, width));
     let made = made.collect::<Vec<Alone>>().into_iter().flat_map(|alone| all.collect(alone)).collect();
-    Ahead::of(made, all.functions)
+    (made, all.functions)
 }
 
 impl<'a> Checker<'a> {

@@ -167,8 +167,8 @@ pub fn map<A: Copy, B: Copy + Default, const N: usize>(v: [A; N], f: impl Fn(A) 
 /// The sum of the products of the components.
 #[inline]
 pub fn dot<const N: usize>(a: [f32; N], b: [f32; N]) -> f32 {
-    let mut sum = 0.0;
-    for c in 0..N {
+    let mut sum = a[0] * b[0];
+    for c in 1..N {
         sum += a[c] * b[c];
     }
     sum

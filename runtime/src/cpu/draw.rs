@@ -77,6 +77,13 @@ fn fill(pixels: &mut [[f32; 4]], [r, g, b, a]: [&Lanes; 4], float: impl Fn(u32) 
     wide(
         #[inline(always)]
         || {
+            // One number a pixel is read once.
+            if std::ptr::eq(r, g) && std::ptr::eq(r, b) {
+                for ((pixel, grey), a) in pixels.iter_mut().zip(r).zip(a) {
+                    *pixel = [float(*grey), float(*grey), float(*grey), float(*a)];
+                }
+                return;
+            }
             for ((((pixel, r), g), b), a) in pixels.iter_mut().zip(r).zip(g).zip(b).zip(a) {
                 *pixel = [float(*r), float(*g), float(*b), float(*a)];
             }

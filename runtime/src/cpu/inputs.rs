@@ -57,8 +57,14 @@ impl Source {
 
     #[inline(always)]
     fn write(self, places: &Places, lanes: &mut Lanes) {
-        for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
-            *to = self.slope.component(self.component, *x, *y).to_bits();
+        if self.slope.is_constant_down(self.component) {
+            for (to, x) in lanes.iter_mut().zip(&places.x) {
+                *to = self.slope.component(self.component, *x, 0.0).to_bits();
+            }
+        } else {
+            for ((to, x), y) in lanes.iter_mut().zip(&places.x).zip(&places.y) {
+                *to = self.slope.component(self.component, *x, *y).to_bits();
+            }
         }
     }
 }
