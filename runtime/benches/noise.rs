@@ -156,7 +156,7 @@ fn cells() -> Work {
 fn cells_in_space() -> Work {
     let table = PermutationTable::new(1);
     let far = move |x, y| worley_3d(&table, euclidean, ReturnType::Distance, [x, y, DEPTH].into());
-    Box::new(move || fill(&far))
+    Box::new(move || fill(far))
 }
 
 /// The distance to the nearest of the points of nine cells, in space 27.

@@ -41,12 +41,16 @@ fn hsv(hue: f32, saturation: f32, value: f32) -> [u8; 3] {
     })
 }
 
+/// What sums of shares and the like are off by at most.
+const ROUNDING: f32 = 1.0 / 65_536.0;
+
 /// What shows a component of a vector: itself in 0..=1, its fractional part outside. So a value
 /// that leaves the range is seen as a jump, where clamping would hide how far it goes, and a place
-/// or a direction shows its periods. What is no number is 0.
+/// or a direction shows its periods; what only rounding takes out of the range is its end. What is no
+/// number is 0.
 pub fn of_component(x: f32) -> f32 {
     match x {
-        x if (0.0..=1.0).contains(&x) => x,
+        x if (-ROUNDING..=1.0 + ROUNDING).contains(&x) => x.clamp(0.0, 1.0),
         x if x.is_finite() => (x - x.floor()).min(1.0),
         _ => 0.0,
     }
@@ -92,7 +96,16 @@ mod tests {
 
     #[test]
     fn components_fold_back() {
-        let cases = [(0.0, 0.0), (0.25, 0.25), (1.0, 1.0), (1.25, 0.25), (-0.25, 0.75), (7.5, 0.5)];
+        let cases = [
+            (0.0, 0.0),
+            (0.25, 0.25),
+            (1.0, 1.0),
+            (1.25, 0.25),
+            (-0.25, 0.75),
+            (7.5, 0.5),
+            (1.000_000_1, 1.0),
+            (-1e-7, 0.0),
+        ];
         for (x, shown) in cases {
             assert_eq!(of_component(x), shown, "{x}");
         }

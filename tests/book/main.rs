@@ -23,8 +23,9 @@ fn book() -> BTreeMap<PathBuf, Vec<u8>> {
     for group in &groups {
         files.insert(PathBuf::from(format!("{}.md", group.name)), group.text().into_bytes());
         for node in group.nodes() {
+            // Nodes of several files share names.
             let picture = draw::sheet(&root().join(format!("tests/nodes/{}.tex", group.name)), &node);
-            files.insert(PathBuf::from(format!("images/{node}.jpg")), picture);
+            files.insert(PathBuf::from(format!("images/{}/{node}.jpg", group.name)), picture);
         }
     }
     files.insert("intrinsics.md".into(), page::intrinsics().into_bytes());
@@ -51,7 +52,6 @@ fn the_book_is_up_to_date() {
     let mut stale: Vec<PathBuf> = gone.collect();
     if writes {
         stale.drain(..).for_each(|path| fs::remove_file(folder.join(path)).expect("it can be removed"));
-        fs::create_dir_all(folder.join("images")).expect("the folder can be made");
     }
     for (path, bytes) in book {
         let file = folder.join(&path);
@@ -59,6 +59,7 @@ fn the_book_is_up_to_date() {
             continue;
         }
         if writes {
+            file.parent().map(fs::create_dir_all).transpose().expect("the folder can be made");
             fs::write(file, bytes).expect("it can be written");
         } else {
             stale.push(path);

@@ -78,7 +78,7 @@ impl Group {
             for node in self.nodes.iter().filter(|node| node.name == name) {
                 let _ = write!(page, "\n```text\n{}\n```\n\n{}\n", node.signature, node.doc);
             }
-            let _ = write!(page, "\n![{name}](images/{name}.jpg)\n");
+            let _ = write!(page, "\n![{name}](images/{}/{name}.jpg)\n", self.name);
             let alone = format!("{name}_alone");
             if let Some((_, text)) = self.examples.iter().find(|(texture, _)| *texture == alone) {
                 let _ = write!(page, "\n```tex\n{}\n```\n", text.trim_end());

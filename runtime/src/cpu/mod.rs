@@ -8,7 +8,7 @@
 //! same bits as a folded constant, whatever batch it is in. Batches are spread over all cores.
 //!
 //! ```text
-//! graph ──remove_dead──▶ planner ──▶ steps ──registers──▶ plan ──machine──▶ pixels
+//! graph ──remove_dead──▶ planner ──fused──▶ steps ──registers──▶ plan ──machine──▶ pixels
 //! ```
 
 mod draw;

@@ -2,9 +2,9 @@
 //!
 //! A step is a loop over the lanes of a batch, so whatever it computes goes through the cache. A
 //! noise is some hundred steps; as one loop its values stay in vector registers. `rows` holds such
-//! loops for the nodes of `forms`. They are made of the planned steps of these nodes themselves
-//! (`write`, a test, makes them and fails where they are stale), by the functions that define the
-//! intrinsics, so a fused row has the bits of what it stands for.
+//! loops. They are made of the planned steps of nodes (`write`, a test, makes them and fails where they
+//! are stale), by the functions that define the intrinsics, so a fused row has the bits of what it
+//! stands for.
 //!
 //! A planned function is known by the hash of its steps, whatever graph it is in. Constants that
 //! differ from use to use, seeds and periods, are *free*: the row takes them as further arguments.
@@ -20,10 +20,9 @@ mod write;
 use super::mask::Mask;
 use super::plan::{Fused, Planned, Register, Step};
 use super::planner::Fuse;
+use rows::ROWS;
 use shape::Shape;
 use texgraph_compiler::intrinsic::{self, Evaluate, LANES, Lanes, row_of, wide};
-
-use rows::ROWS;
 
 /// The most components of inputs, and free constants, of a row.
 pub const MOST_ARGUMENTS: usize = 24;

@@ -7,7 +7,7 @@ use super::super::planner::Fuse;
 use super::super::texture;
 use super::range::{Range, ranges};
 use super::shape::{Operand, Operation, Shape, overload};
-use super::{MOST_ARGUMENTS, MOST_OUTPUTS, ROWS};
+use super::{MOST_ARGUMENTS, MOST_OUTPUTS, ROWS, Rows};
 use crate::pass;
 use crate::render::Request;
 use crate::resource::Tables;
@@ -87,13 +87,18 @@ impl Fuse for Found {
     }
 }
 
-/// The shapes of a program's functions of that name.
-fn shapes(program: &Program, node: &'static str) -> Vec<Shape> {
+/// Plans a program.
+fn plan(program: &Program, fuse: &mut dyn Fuse) {
     let pass = pass::texture(program).expect("it has a pass");
     let graph = super::super::only(&pass.code.graph, 0);
     let textures = texture::decode_all(&pass, &[], &Tables::default()).expect("it has no textures");
+    Plan::new(&pass, &graph, &Request::new([64, 64]), &textures, fuse).expect("it is small");
+}
+
+/// The shapes of a program's functions of that name.
+fn shapes(program: &Program, node: &'static str) -> Vec<Shape> {
     let mut found = Found { node, shapes: Vec::new() };
-    Plan::new(&pass, &graph, &Request::new([64, 64]), &textures, &mut found).expect("it is small");
+    plan(program, &mut found);
     found.shapes
 }
 
@@ -290,6 +295,38 @@ fn rows_are_their_nodes() {
                 for (n, output) in shape.outputs.iter().enumerate() {
                     assert_eq!(out[n][i], word(&values, output), "{title}, output {n}, lane {i}");
                 }
+            }
+        }
+    }
+}
+
+/// Counts the functions that become one step, and those of a row's name that don't.
+#[derive(Default)]
+struct Counted([usize; 2]);
+
+impl Fuse for Counted {
+    fn knows(&self, name: &str) -> bool {
+        Rows.knows(name)
+    }
+
+    fn fuse(&mut self, name: &str, planned: &mut Planned, known: &[Lanes], registers: &mut usize) -> bool {
+        let fused = Rows.fuse(name, planned, known, registers);
+        self.0[usize::from(!fused)] += 1;
+        fused
+    }
+}
+
+/// Rows stand for their nodes with any seed.
+#[test]
+fn rows_are_found() {
+    let library = Library::standard().expect("the library parses");
+    for form in FORMS {
+        for n in form.dimensions {
+            for seed in [0, 1, -5, 1 << 30] {
+                let mut counted = Counted::default();
+                plan(&compiled(&library, form, *n, seed, 11), &mut counted);
+                let [fused, others] = counted.0;
+                assert!(fused > 0 && others == 0, "{}, seed {seed}: {:?}", form.text, counted.0);
             }
         }
     }
