@@ -30,11 +30,13 @@ const SIDE: u32 = 512;
 const CELLS: f64 = 32.0;
 /// Where space is cut.
 const DEPTH: f64 = 0.37;
+/// When.
+const TIME: f64 = 0.61;
 
 /// A kind of noise, by all three.
 struct Case {
     name: &'static str,
-    /// The value in `.tex`, of a place `p` in the plane or `s` in space.
+    /// The value in `.tex`, of a place `p` in the plane, `s` in space or `t` in time, too.
     ours: &'static str,
     /// Of the crate `noise`, if it does the same.
     noise: Option<Work>,
@@ -67,6 +69,7 @@ fn cases() -> Vec<Case> {
             noise: Some(space(Perlin::new(1))),
             lite: Some(lite_space(lite(NoiseType::Perlin))),
         },
+        Case { name: "gradient, 4D", ours: "noise(t)", noise: Some(moment(Perlin::new(1))), lite: None },
         Case {
             name: "value, 2D",
             ours: "value_noise(p)",
@@ -79,6 +82,7 @@ fn cases() -> Vec<Case> {
             noise: Some(space(Value::new(1))),
             lite: Some(lite_space(lite(NoiseType::Value))),
         },
+        Case { name: "value, 4D", ours: "value_noise(t)", noise: Some(moment(Value::new(1))), lite: None },
         Case {
             name: "simplex, 2D",
             ours: "simplex(p)",
@@ -91,6 +95,7 @@ fn cases() -> Vec<Case> {
             noise: Some(space(Simplex::new(1))),
             lite: Some(lite_space(lite(NoiseType::OpenSimplex2))),
         },
+        Case { name: "simplex, 4D", ours: "simplex(t)", noise: Some(moment(Simplex::new(1))), lite: None },
         Case {
             name: "cellular, 2D, 4 cells",
             ours: "voronoi(p, search: near).f1",
@@ -130,6 +135,10 @@ fn plane(f: impl NoiseFn<f64, 2> + Send + Sync + 'static) -> Work {
 
 fn space(f: impl NoiseFn<f64, 3> + Send + Sync + 'static) -> Work {
     Box::new(move || fill(|x, y| f.get([x, y, DEPTH])))
+}
+
+fn moment(f: impl NoiseFn<f64, 4> + Send + Sync + 'static) -> Work {
+    Box::new(move || fill(|x, y| f.get([x, y, DEPTH, TIME])))
 }
 
 fn lite(kind: NoiseType) -> FastNoiseLite {
@@ -189,6 +198,7 @@ fn compiled(ours: &str) -> Program {
         "texture t(uv: vec2) -> (height: float) {{\n\
          let p = uv * {CELLS:.1}\n\
          let s = vec3(p, {DEPTH})\n\
+         let t = vec4(s, {TIME})\n\
          height = {ours}\n}}"
     );
     let library = Library::standard().expect("the library parses");

@@ -6,15 +6,37 @@
 
 use crate::render::Request;
 
-/// A float input over a picture, linear in the place.
+/// A float input over a picture, linear in the place: a rise for each component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slope {
+pub struct Slope([Rise; 4]);
+
+/// One component of an input.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Rise {
     /// At the picture's upper left corner.
-    corner: [f64; 4],
+    corner: f64,
     /// The change one pixel to the right.
-    right: [f64; 4],
+    right: f64,
     /// The change one pixel down.
-    down: [f64; 4],
+    down: f64,
+}
+
+impl Rise {
+    /// At a place in pixels; the first pixel's centre is (0.5, 0.5).
+    #[inline(always)]
+    pub fn at(self, x: f64, y: f64) -> f32 {
+        (self.corner + self.right * x + self.down * y) as f32
+    }
+
+    /// Whether it is the same at all places.
+    pub fn is_constant(self) -> bool {
+        self.right == 0.0 && self.down == 0.0
+    }
+
+    /// Whether it is the same in all places of a row.
+    pub fn is_constant_across(self) -> bool {
+        self.right == 0.0
+    }
 }
 
 impl Slope {
@@ -30,53 +52,39 @@ impl Slope {
         }
     }
 
-    fn constant(corner: [f64; 4]) -> Slope {
-        Slope { corner, right: [0.0; 4], down: [0.0; 4] }
+    fn constant(value: [f64; 4]) -> Slope {
+        Slope(value.map(|corner| Rise { corner, ..Rise::default() }))
     }
 
     fn across(request: &Request) -> Slope {
         let [x0, y0, x1, y1] = request.region;
         let [width, height] = request.size.map(f64::from);
-        Slope {
-            corner: [x0, y0, 0.0, 0.0],
-            right: [(x1 - x0) / width, 0.0, 0.0, 0.0],
-            down: [0.0, (y1 - y0) / height, 0.0, 0.0],
-        }
+        Slope([
+            Rise { corner: x0, right: (x1 - x0) / width, down: 0.0 },
+            Rise { corner: y0, right: 0.0, down: (y1 - y0) / height },
+            Rise::default(),
+            Rise::default(),
+        ])
     }
 
-    /// At a place in pixels; the first pixel's centre is (0.5, 0.5).
+    /// At a place in pixels.
     #[cfg(feature = "gpu")]
     pub fn at(&self, x: f64, y: f64) -> [f32; 4] {
-        [0, 1, 2, 3].map(|i| self.component(i, x, y))
+        self.0.map(|rise| rise.at(x, y))
     }
 
-    /// One component of it at a place in pixels.
-    pub fn component(&self, i: usize, x: f64, y: f64) -> f32 {
-        (self.corner[i] + self.right[i] * x + self.down[i] * y) as f32
-    }
-
-    /// Whether a component is the same at all places.
-    pub fn is_constant(&self, i: usize) -> bool {
-        self.right[i] == 0.0 && self.down[i] == 0.0
-    }
-
-    /// Whether a component is the same in all places of a column.
-    pub fn is_constant_down(&self, i: usize) -> bool {
-        self.down[i] == 0.0
-    }
-
-    /// Whether a component is the same in all places of a row.
-    pub fn is_constant_across(&self, i: usize) -> bool {
-        self.right[i] == 0.0
+    /// One component.
+    pub fn component(&self, i: usize) -> Rise {
+        self.0[i]
     }
 
     /// The screen derivative to the right.
     pub fn right(&self) -> [f32; 4] {
-        self.right.map(|x| x as f32)
+        self.0.map(|rise| rise.right as f32)
     }
 
     /// The screen derivative down.
     pub fn down(&self) -> [f32; 4] {
-        self.down.map(|x| x as f32)
+        self.0.map(|rise| rise.down as f32)
     }
 }

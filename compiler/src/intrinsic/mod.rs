@@ -20,7 +20,7 @@ pub use derivative::{Tangents, zero};
 pub use lanes::{LANES, Lanes, Vector, ZERO, wide};
 pub use table::*;
 pub use tiling::{Arguments, Tiling};
-pub use value::{finite, floor, whole_to_int};
+pub use value::{finite, floor, pcg4d, whole_to_int};
 
 use crate::graph::{Builder, Constant, Scalar, Value};
 

@@ -26,28 +26,22 @@ pub fn finite(x: f32) -> f32 {
     if x.is_nan() { 0.0 } else { x.clamp(-f32::MAX, f32::MAX) }
 }
 
-/// Floats from here on have no fraction.
-const NO_FRACTION: f32 = 8_388_608.0;
-
-/// The nearest integer, halves to the even one: a sum this large has no bits left for a fraction.
-/// As `libm::rintf`, without branches.
+/// The nearest integer, halves to the even one.
 #[inline]
 pub fn round(x: f32) -> f32 {
-    let rounded = (x.abs() + NO_FRACTION) - NO_FRACTION;
-    if x.abs() < NO_FRACTION { rounded.copysign(x) } else { x }
+    x.round_ties_even()
 }
 
-/// The greatest integer that is not greater. As `libm::floorf`, without branches.
+/// The greatest integer that is not greater.
 #[inline]
 pub fn floor(x: f32) -> f32 {
-    let near = round(x);
-    near - if near > x { 1.0 } else { 0.0 }
+    x.floor()
 }
 
-/// The least integer that is not less. As `libm::ceilf`, without branches.
+/// The least integer that is not less.
 #[inline]
 pub fn ceil(x: f32) -> f32 {
-    -floor(-x)
+    x.ceil()
 }
 
 /// Smaller divisors, bases and arguments of logarithms count as 0: graphics hardware may take what
@@ -96,20 +90,23 @@ pub fn remainder_int(x: i32, y: i32) -> i32 {
 /// Truncates and saturates; NaN is 0.
 #[inline]
 pub fn to_int(x: f32) -> i32 {
-    whole_to_int(floor(x.abs()).copysign(x))
+    whole_to_int(if x.is_nan() { 0.0 } else { x.trunc() })
 }
 
 /// Rounds down to an int and saturates; NaN is 0.
 #[inline]
 pub fn floor_int(x: f32) -> i32 {
-    whole_to_int(floor(x))
+    whole_to_int(if x.is_nan() { 0.0 } else { floor(x) })
 }
 
-/// As `x as i32` for a whole number, without branches: the sum's last 32 bits are the int.
+/// As `x as i32` for a whole number, NaN aside, without branches: the sum's last 32 bits are the int.
 #[inline]
 pub fn whole_to_int(x: f32) -> i32 {
-    let number = if x.is_nan() { 0.0 } else { x };
-    let held = f64::from(number).max(f64::from(i32::MIN)).min(f64::from(i32::MAX));
+    let [least, most] = [i32::MIN, i32::MAX].map(f64::from);
+    let wide = f64::from(x);
+    // Not `clamp`, which looks for NaN.
+    let held = if wide > least { wide } else { least };
+    let held = if held < most { held } else { most };
     (held + 6_755_399_441_055_744.0).to_bits() as i32
 }
 
@@ -261,7 +258,8 @@ fn unit(words: [u32; 4]) -> [f32; 4] {
     map(words, |u| (u >> 8) as i32 as f32 * (1.0 / 16_777_216.0))
 }
 
-/// Four words to four words, each depending on all (Jarzynski & Olano 2020).
+/// Four random words of four words, each depending on all (Jarzynski & Olano, *Hash functions for GPU
+/// rendering*, JCGT 2020).
 #[inline]
 pub fn pcg4d(words: [u32; 4]) -> [u32; 4] {
     let stir = |[x, y, z, w]: [u32; 4]| {

@@ -1,7 +1,7 @@
 //! Draws a picture: a machine for each thread, batch after batch.
 
 use super::fused::Rows;
-use super::inputs::Places;
+use super::inputs;
 use super::machine::{Code, Machine};
 use super::mask::Mask;
 use super::plan::Plan;
@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use texgraph_compiler::graph::{Graph, Scalar};
 use texgraph_compiler::intrinsic::{LANES, Lanes, wide};
 
-/// Batches that one thread takes on at least.
-const LEAST_BATCHES: usize = 16;
+/// Batches that one thread takes on at a time, after which it says how far it is.
+const STRETCH: usize = 16;
 
 /// The pixels of the output of a graph, row by row.
 ///
@@ -32,16 +32,17 @@ pub fn draw(
     let [width, height] = request.size.map(|side| side as usize);
     let mut pixels = blank(width * height).ok_or(RenderError::Memory { size: request.size })?;
     let done = AtomicUsize::new(0);
-    let batch = |(machine, places): &mut (Machine, Places), (n, batch): (usize, &mut [[f32; 4]])| {
-        places.go(n * LANES, width);
-        shade(&plan, textures, machine, places, batch);
-        let before = done.fetch_add(batch.len(), Ordering::Relaxed);
-        for row in before / width..(before + batch.len()) / width {
+    let draw = |machine: &mut Machine, (n, stretch): (usize, &mut [[f32; 4]])| {
+        for (batch, first) in stretch.chunks_mut(LANES).zip((n * STRETCH * LANES..).step_by(LANES)) {
+            shade(&plan, textures, machine, first, width, batch);
+        }
+        let before = done.fetch_add(stretch.len(), Ordering::Relaxed);
+        for row in before / width..(before + stretch.len()) / width {
             progress((row + 1) as f32 / height as f32);
         }
     };
-    let batches = pixels.par_chunks_mut(LANES).enumerate().with_min_len(LEAST_BATCHES);
-    batches.for_each_init(Default::default, batch);
+    let stretches = pixels.par_chunks_mut(STRETCH * LANES).enumerate();
+    stretches.for_each_init(Machine::default, draw);
     Ok(pixels)
 }
 
@@ -52,13 +53,20 @@ fn blank(count: usize) -> Option<Vec<[f32; 4]>> {
     Some(vec![[0.0; 4]; count])
 }
 
-/// Draws the pixels at the first of some places.
-fn shade(plan: &Plan, textures: &[Texture], machine: &mut Machine, places: &Places, pixels: &mut [[f32; 4]]) {
+/// Draws pixels of a picture from one on.
+fn shade(
+    plan: &Plan,
+    textures: &[Texture],
+    machine: &mut Machine,
+    first: usize,
+    width: usize,
+    pixels: &mut [[f32; 4]],
+) {
     let code = Code { functions: &plan.functions, known: &plan.known, textures };
     machine.begin(code, plan.entry, Mask::MAX >> (LANES - pixels.len()));
-    for (i, source) in plan.inputs.iter().enumerate() {
+    for (i, rise) in plan.inputs.iter().enumerate() {
         if let Some(lanes) = machine.input(i) {
-            source.fill(places, lanes);
+            inputs::fill(*rise, first, width, lanes);
         }
     }
     machine.work(code);

@@ -6,9 +6,9 @@
 //! did not take it is never read.
 
 use super::fused::Row;
-use super::inputs::Source;
 use super::planner::{Fuse, Planner};
 use super::texture::Texture;
+use crate::flat::Rise;
 use crate::pass::Pass;
 use crate::render::{RenderError, Request};
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub struct Plan {
     /// The function to run.
     pub entry: usize,
     /// What its frame begins with.
-    pub inputs: Vec<Source>,
+    pub inputs: Vec<Rise>,
     /// What is drawn; none if the program has no such output.
     pub output: Option<Drawn>,
 }

@@ -22,7 +22,6 @@ pub(crate) mod table;
 mod tables;
 
 pub use encoding::{SrgbEncoder, srgb_to_linear};
-pub(crate) use permutation::pcg4d;
 pub(crate) use table::MAX_LAYERS;
 
 use crate::project::Project;

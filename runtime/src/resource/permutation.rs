@@ -13,6 +13,7 @@
 
 use super::table::Made;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
+use texgraph_compiler::intrinsic::pcg4d;
 use texgraph_compiler::manifest::{Format, Recipe};
 
 /// Keeps these random numbers apart from those of a program that hashes (i, channel, seed): "perm".
@@ -118,22 +119,6 @@ fn shuffle(size: u32, channel: u32, seed: i32, salt: u32) -> Vec<i32> {
         places.swap(i as usize, other as usize);
     }
     places
-}
-
-/// Four random words of four words (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
-pub fn pcg4d(words: [u32; 4]) -> [u32; 4] {
-    let mixed = mix(words.map(|word| word.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)));
-    mix(mixed.map(|word| word ^ (word >> 16)))
-}
-
-/// Adds to each word the product of two others, one after the other.
-fn mix(words: [u32; 4]) -> [u32; 4] {
-    let [mut x, mut y, mut z, mut w] = words;
-    x = x.wrapping_add(y.wrapping_mul(w));
-    y = y.wrapping_add(z.wrapping_mul(x));
-    z = z.wrapping_add(x.wrapping_mul(y));
-    w = w.wrapping_add(y.wrapping_mul(z));
-    [x, y, z, w]
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Random numbers of a seed, the same on every machine.
 
-use crate::resource::pcg4d;
+use texgraph_compiler::intrinsic::pcg4d;
 
 /// Keeps these random numbers apart from those of a program: "tile".
 const SALT: u32 = 0x7469_6c65;

@@ -22,7 +22,7 @@ use super::plan::{Fused, Planned, Register, Step};
 use super::planner::Fuse;
 use rows::ROWS;
 use shape::Shape;
-use texgraph_compiler::intrinsic::{self, Evaluate, LANES, Lanes, row_of, wide};
+use texgraph_compiler::intrinsic::{self, Evaluate, LANES, Lanes, pcg4d, row_of, wide};
 
 /// The most components of inputs, and free constants, of a row.
 pub const MOST_ARGUMENTS: usize = 24;

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write;
 use std::path::Path;
 use texgraph_compiler::graph::Scalar;
-use texgraph_compiler::intrinsic::{Evaluate, LANES, Lanes, ZERO};
+use texgraph_compiler::intrinsic::{Evaluate, HASH4, LANES, Lanes, MULTIPLY, TO_INT, ZERO};
 use texgraph_compiler::module::Loader;
 use texgraph_compiler::{Library, Options, Program, compile};
 
@@ -30,9 +30,9 @@ struct Form {
 }
 
 const FORMS: &[Form] = &[
-    Form { node: "_noise", text: "noise(p, seed: SEED)", dimensions: &[1, 2, 3] },
-    Form { node: "_value_noise", text: "value_noise(p, seed: SEED)", dimensions: &[1, 2, 3] },
-    Form { node: "_simplex", text: "simplex(p, seed: SEED)", dimensions: &[2, 3] },
+    Form { node: "_noise", text: "noise(p, seed: SEED)", dimensions: &[1, 2, 3, 4] },
+    Form { node: "_value_noise", text: "value_noise(p, seed: SEED)", dimensions: &[1, 2, 3, 4] },
+    Form { node: "_simplex", text: "simplex(p, seed: SEED)", dimensions: &[1, 2, 3, 4] },
     Form { node: "_close", text: "worley(p, seed: SEED)", dimensions: &[2, 3] },
     Form { node: "_close", text: "voronoi(p, seed: SEED).f1", dimensions: &[2, 3] },
     Form { node: "_close", text: "voronoi(p, search: near, seed: SEED).f1", dimensions: &[2, 3] },
@@ -136,6 +136,47 @@ fn made() -> Vec<Made> {
     made
 }
 
+/// An int that is cut out of a hash: of `int(hash(…).x * 2.0ⁿ)` the n upper bits of the word that the
+/// number is made of.
+struct Pick<'a> {
+    words: &'a [Operand],
+    component: u32,
+    bits: u32,
+}
+
+/// The picks of a shape, by their values.
+fn picks<'a>(shape: &'a Shape, free: &[Vec<u16>]) -> HashMap<u32, Pick<'a>> {
+    let made = |value: Operand| {
+        let Operand::Value(value) = value else { return None };
+        let (operation, operands, first) = shape.operations.iter().rfind(|(.., first)| *first <= value)?;
+        Some((*operation, operands.as_slice(), value - first))
+    };
+    let pick = |operands: &[Operand]| {
+        let (Operation::Each(row), factors, _) = made(operands[0])? else { return None };
+        let Operand::Constant(place) = factors[1] else { return None };
+        let is_free = free.iter().any(|places| places.contains(&place));
+        let power = f32::from_bits(shape.constants[usize::from(place)].1);
+        let bits = (1..=24).find(|bits| power == (1_u32 << bits) as f32)?;
+        let (Operation::Whole(hash, _), words, component) = made(factors[0])? else { return None };
+        let is_pick = row == MULTIPLY && hash == HASH4 && !is_free;
+        is_pick.then_some(Pick { words: &words[..4], component, bits })
+    };
+    let ints = shape.operations.iter().filter(|(operation, ..)| *operation == Operation::Each(TO_INT));
+    ints.filter_map(|(_, operands, first)| Some((*first, pick(operands)?))).collect()
+}
+
+/// The values that are read, where picks read words alone.
+fn read(shape: &Shape, picks: &HashMap<u32, Pick>) -> HashSet<Operand> {
+    let mut read: HashSet<Operand> = shape.outputs.iter().copied().collect();
+    for (operation, operands, first) in shape.operations.iter().rev() {
+        let values = if matches!(operation, Operation::Whole(..)) { 4 } else { 1 };
+        if (*first..first + values).any(|value| read.contains(&Operand::Value(value))) {
+            read.extend(picks.get(first).map_or(operands.as_slice(), |pick| pick.words));
+        }
+    }
+    read
+}
+
 /// The text of a row.
 fn write(made: &Made, to: &mut String) {
     let Made { node, title, shape, free } = made;
@@ -161,13 +202,24 @@ fn write(made: &Made, to: &mut String) {
         Operand::Value(n) => ranges[n as usize].clone(),
         _ => Range::any(),
     };
-    let operands = shape.operations.iter().flat_map(|(_, operands, _)| operands);
-    let read: HashSet<&Operand> = operands.chain(&shape.outputs).collect();
+    let picks = picks(shape, free);
+    let read = read(shape, &picks);
+    let is_read = |value: u32| read.contains(&Operand::Value(value));
     for (operation, operands, first) in &shape.operations {
+        let values = if matches!(operation, Operation::Whole(..)) { 4 } else { 1 };
+        let values: Vec<u32> = (*first..first + values).collect();
+        if !values.iter().any(|value| is_read(*value)) {
+            continue;
+        }
         let of: Vec<String> = operands.iter().map(name).collect();
         // A float that may be infinite is made finite, as its row says.
         let may = |value: u32| !ranges[value as usize].is_finite();
         let line = match operation {
+            _ if picks.contains_key(first) => {
+                let Pick { words, component, bits } = &picks[first];
+                let words: Vec<String> = words.iter().map(name).collect();
+                format!("let v{first} = pcg4d([{}])[{component}] >> {};", words.join(", "), 32 - bits)
+            }
             Operation::Select => format!("let v{first} = choose({});", of.join(", ")),
             // What is whole already need not be rounded, what is small not be clamped.
             Operation::Each(row) if row.row().name == "(int)" && range(&ranges, operands[0]).is_whole() => {
@@ -189,10 +241,8 @@ fn write(made: &Made, to: &mut String) {
                 }
             }
             Operation::Whole(row, width) => {
-                let values: Vec<u32> = (0..4).map(|c| first + c).collect();
-                let read = |value: &u32| read.contains(&Operand::Value(*value));
-                let names: Vec<String> =
-                    values.iter().map(|v| if read(v) { format!("v{v}") } else { "_".to_owned() }).collect();
+                let name = |value: &u32| if is_read(*value) { format!("v{value}") } else { "_".to_owned() };
+                let names: Vec<String> = values.iter().map(name).collect();
                 let mut line = format!(
                     "let [{}] = const {{ whole({:?}, {}) }}({width}, [[{}], [{}]]);",
                     names.join(", "),
@@ -202,7 +252,7 @@ fn write(made: &Made, to: &mut String) {
                     of[4..].join(", ")
                 );
                 if row.row().value.scalar() == Some(Scalar::Float) && may(*first) {
-                    for v in values.iter().filter(|v| read(v)) {
+                    for v in values.iter().filter(|v| is_read(**v)) {
                         line += &format!(" let v{v} = finite(v{v});");
                     }
                 }
@@ -220,7 +270,7 @@ fn write(made: &Made, to: &mut String) {
 fn rows_are_up_to_date() {
     let mut text = String::from(
         "//! Made by `write` of the library's nodes; not to be edited.\n\n\
-         use super::{Row, choose, each, finite, run, small_int, whole, whole_int};\n\n\
+         use super::{Row, choose, each, finite, pcg4d, run, small_int, whole, whole_int};\n\n\
          /// Every row.\npub static ROWS: &[Row] = &[\n",
     );
     made().iter().for_each(|made| write(made, &mut text));

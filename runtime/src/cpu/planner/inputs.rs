@@ -1,6 +1,5 @@
 //! The inputs of functions: where a frame has them, and what is known of those of the entry.
 
-use super::super::inputs::Source;
 use super::super::plan::{Components, Register};
 use super::known::constant;
 use super::{Planner, State};
@@ -50,10 +49,11 @@ impl Planner<'_> {
         let slope = Slope::of(&input.name, self.request);
         let mut components = [Register::ZERO; 4];
         for (c, to) in components.iter_mut().enumerate().take(usize::from(ty.width())) {
-            *to = if slope.is_constant(c) {
-                self.number(slope.component(c, 0.5, 0.5).to_bits())
+            let rise = slope.component(c);
+            *to = if rise.is_constant() {
+                self.number(rise.at(0.5, 0.5).to_bits())
             } else {
-                self.plan.inputs.push(Source { slope, component: c });
+                self.plan.inputs.push(rise);
                 Register::Frame(self.plan.inputs.len() as u32 - 1)
             };
         }
