@@ -36,7 +36,11 @@ const CHUNK: usize = 16;
 pub struct Row {
     /// The node's name.
     pub name: &'static str,
-    /// Of its steps, see [`Shape::hash`].
+    /// How many components its inputs have, ...
+    inputs: usize,
+    /// ... and how many operations it stands for.
+    operations: usize,
+    /// Of those, see [`Shape::hash`].
     hash: u128,
     /// The free constants: of each, where among the function's constants it stands.
     free: &'static [&'static [u16]],
@@ -54,7 +58,7 @@ impl Fuse for Rows {
 
     fn fuse(&mut self, name: &str, planned: &mut Planned, known: &[Lanes], registers: &mut usize) -> bool {
         let Some(shape) = Shape::of(planned, known) else { return false };
-        let row = ROWS.iter().find(|row| row.name == name && shape.is(row.hash, row.free));
+        let row = ROWS.iter().find(|row| row.name == name && shape.is(row));
         let Some(row) = row else { return false };
         let inputs = (0..planned.inputs as u32).map(Register::Frame);
         let free = row.free.iter().filter_map(|places| Some(shape.constant(*places.first()?)));

@@ -7,7 +7,9 @@ pub static ROWS: &[Row] = &[
     // `noise(p, seed: _)` in 1D.
     Row {
         name: "_noise",
-        hash: 0x6e5911104e1e61cd864360862ce062de,
+        inputs: 1,
+        operations: 38,
+        hash: 0x45e61cf3c555c549df444cf2d8b5a3bb,
         free: &[&[22, 52]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -52,7 +54,9 @@ pub static ROWS: &[Row] = &[
     // `noise(p, seed: _)` in 2D.
     Row {
         name: "_noise",
-        hash: 0x536b4ecdcb9540b9a128462514a8f7ef,
+        inputs: 2,
+        operations: 152,
+        hash: 0xee6c8abb7f30e3ac25761a00d4b88b57,
         free: &[&[42, 101, 161, 221]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -207,7 +211,9 @@ pub static ROWS: &[Row] = &[
     // `noise(p, seed: _)` in 3D.
     Row {
         name: "_noise",
-        hash: 0xa2a016dc682e4ededd3b4bca2cd99dbf,
+        inputs: 3,
+        operations: 335,
+        hash: 0x35058a36a251de232e131dd43c9d6a6f,
         free: &[&[74, 141, 207, 273, 339, 405, 471, 537]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -537,7 +543,9 @@ pub static ROWS: &[Row] = &[
     // `noise(p, seed: _)` in 4D.
     Row {
         name: "_noise",
-        hash: 0x37fdff2b10ec2b917010371ee3b6d814,
+        inputs: 4,
+        operations: 969,
+        hash: 0x810d4a34519f291d3cc8e5c5c03fb875,
         free: &[&[99, 197, 294, 391, 488, 585, 682, 779, 876, 973, 1070, 1167, 1264, 1361, 1458, 1555]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -1485,7 +1493,9 @@ pub static ROWS: &[Row] = &[
     // `value_noise(p, seed: _)` in 1D.
     Row {
         name: "_value_noise",
-        hash: 0x17db49489075f59de7d5b3b05ccaa694,
+        inputs: 1,
+        operations: 22,
+        hash: 0x2c4abcff35652fbfcf739f2af2532037,
         free: &[&[22, 36]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -1518,7 +1528,9 @@ pub static ROWS: &[Row] = &[
     // `value_noise(p, seed: _)` in 2D.
     Row {
         name: "_value_noise",
-        hash: 0x628f789fa44cae1a1f3f2734a7b35d3b,
+        inputs: 2,
+        operations: 59,
+        hash: 0xc21952d4722a3a6e9854ae2f829b7774,
         free: &[&[42, 62, 83, 104]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -1588,7 +1600,9 @@ pub static ROWS: &[Row] = &[
     // `value_noise(p, seed: _)` in 3D.
     Row {
         name: "_value_noise",
-        hash: 0x0a67243f58681573c5426aa5a3d54d35,
+        inputs: 3,
+        operations: 144,
+        hash: 0x6d3cd54a108afec4e56525f1e4b61549,
         free: &[&[68, 96, 123, 150, 177, 204, 231, 258]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -1743,7 +1757,9 @@ pub static ROWS: &[Row] = &[
     // `value_noise(p, seed: _)` in 4D.
     Row {
         name: "_value_noise",
-        hash: 0x84546d5b9cf73e0b85754a99ace9d8e9,
+        inputs: 4,
+        operations: 346,
+        hash: 0xe86872b2628d7eb7211c514ff8fd8f67,
         free: &[&[91, 127, 162, 197, 232, 267, 302, 337, 372, 407, 442, 477, 512, 547, 582, 617]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -2100,7 +2116,9 @@ pub static ROWS: &[Row] = &[
     // `simplex(p, seed: _)` in 1D.
     Row {
         name: "_simplex",
-        hash: 0x7cbf47ecbd1da191ec27b706261b7926,
+        inputs: 1,
+        operations: 44,
+        hash: 0xd4d8bb7b20930574f834207e903a28d7,
         free: &[&[22, 58]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -2151,7 +2169,9 @@ pub static ROWS: &[Row] = &[
     // `simplex(p, seed: _)` in 2D.
     Row {
         name: "_simplex",
-        hash: 0x42036c97b205b74515cea5cf3e634708,
+        inputs: 2,
+        operations: 149,
+        hash: 0xb776fcdb497cead2f6ac4c4489f0ae96,
         free: &[&[78, 155, 221]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -2305,7 +2325,9 @@ pub static ROWS: &[Row] = &[
     // `simplex(p, seed: _)` in 3D.
     Row {
         name: "_simplex",
-        hash: 0x1e8cbb2fb4b238aed625255a6664aee3,
+        inputs: 3,
+        operations: 245,
+        hash: 0xab35c7e7d0c236e1462e9e090adb8234,
         free: &[&[136, 216, 297, 364]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -2553,7 +2575,9 @@ pub static ROWS: &[Row] = &[
     // `simplex(p, seed: _)` in 4D.
     Row {
         name: "_simplex",
-        hash: 0x0e7f72dca83f661a687bd6c74386c6b7,
+        inputs: 4,
+        operations: 460,
+        hash: 0xa7bb8ccffeed0676ab3479ffa2ba4a2b,
         free: &[&[243, 353, 462, 571, 664]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -3014,7 +3038,9 @@ pub static ROWS: &[Row] = &[
     // `worley(p, seed: _)` in 2D.
     Row {
         name: "_close",
-        hash: 0xc274cc6cfe9ed2b750afff9e25bf7923,
+        inputs: 2,
+        operations: 222,
+        hash: 0x740cb87405655ce2d22ca70cbcd555bc,
         free: &[&[27, 74, 119, 164, 209, 254, 299, 344, 389]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -3247,7 +3273,9 @@ pub static ROWS: &[Row] = &[
     // `worley(p, seed: _)` in 3D.
     Row {
         name: "_close",
-        hash: 0x0df598051a130d633ec1b6223e66b76b,
+        inputs: 3,
+        operations: 927,
+        hash: 0x4709ed0daee98a0462f5d850d40f1985,
         free: &[&[39, 100, 159, 218, 277, 336, 395, 454, 513, 572, 631, 690, 749, 808, 867, 926, 985, 1044, 1103, 1162, 1221, 1280, 1339, 1398, 1457, 1516, 1575]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -4185,7 +4213,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).f1` in 2D.
     Row {
         name: "_close",
-        hash: 0xe555edffabca6a6ffe28d90a637baf8a,
+        inputs: 2,
+        operations: 240,
+        hash: 0x351335efa61bb0ef8508b95aba952a1b,
         free: &[&[27, 77, 123, 169, 215, 261, 307, 353, 399]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -4436,7 +4466,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).f1` in 3D.
     Row {
         name: "_close",
-        hash: 0x2a1912f691799ec4a9de5015fbc0b15b,
+        inputs: 3,
+        operations: 981,
+        hash: 0x5ec0812b6b4921bdf6bfe8b6cbc48d18,
         free: &[&[39, 103, 163, 223, 283, 343, 403, 463, 523, 583, 643, 703, 763, 823, 883, 943, 1003, 1063, 1123, 1183, 1243, 1303, 1363, 1423, 1483, 1543, 1603]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -5428,7 +5460,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, search: near, seed: _).f1` in 2D.
     Row {
         name: "_close",
-        hash: 0x8b5b4c86ae96b82a9132fc0c714100d1,
+        inputs: 2,
+        operations: 100,
+        hash: 0x17a62b735558d7c1014e9f50d660b72c,
         free: &[&[23, 70, 115, 160]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -5539,7 +5573,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, search: near, seed: _).f1` in 3D.
     Row {
         name: "_close",
-        hash: 0xaaae4729754f526de7feea040ae27027,
+        inputs: 3,
+        operations: 281,
+        hash: 0xb6d29dcf745b4f812f3aa8ff5a84ae7e,
         free: &[&[39, 100, 159, 218, 277, 336, 395, 454]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -5831,7 +5867,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).color.r` in 2D.
     Row {
         name: "_close",
-        hash: 0x4686759c5a0900e2b095cbcea1e2a460,
+        inputs: 2,
+        operations: 267,
+        hash: 0x8ca7e215499a489ed57b47d542a27ff7,
         free: &[&[27, 79, 126, 173, 220, 267, 314, 361, 408]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -6109,7 +6147,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).color.r` in 3D.
     Row {
         name: "_close",
-        hash: 0x90364691dd73e651f7675c243b64a7b9,
+        inputs: 3,
+        operations: 1089,
+        hash: 0x6e5ad728c6dc84c86130e29097d956b9,
         free: &[&[39, 105, 166, 227, 288, 349, 410, 471, 532, 593, 654, 715, 776, 837, 898, 959, 1020, 1081, 1142, 1203, 1264, 1325, 1386, 1447, 1508, 1569, 1630]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7209,7 +7249,9 @@ pub static ROWS: &[Row] = &[
     // `worley(p, seed: _)` in 2D.
     Row {
         name: "_better",
-        hash: 0x792a31808a3e6b4e752c6bbd232f6c20,
+        inputs: 5,
+        operations: 22,
+        hash: 0xd2ad79c1516f5a3dff3faf72fcf66707,
         free: &[&[11]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7242,7 +7284,9 @@ pub static ROWS: &[Row] = &[
     // `worley(p, seed: _)` in 2D.
     Row {
         name: "_better",
-        hash: 0xfb65b05e4d0b835a84b17665dc3e6225,
+        inputs: 6,
+        operations: 23,
+        hash: 0x6134a1ff791a214bc4c512259d17c3b3,
         free: &[&[11]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7276,7 +7320,9 @@ pub static ROWS: &[Row] = &[
     // `worley(p, seed: _)` in 3D.
     Row {
         name: "_better",
-        hash: 0x3f42923d25f9d5616b481d408e36912e,
+        inputs: 7,
+        operations: 31,
+        hash: 0x7e086d639d2f73e4779e68129c73963f,
         free: &[&[15]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7318,7 +7364,9 @@ pub static ROWS: &[Row] = &[
     // `worley(p, seed: _)` in 3D.
     Row {
         name: "_better",
-        hash: 0x6dd9cf593e6f8e5025e31c1fb6afb218,
+        inputs: 8,
+        operations: 32,
+        hash: 0x9d0c963bfa5b3f4f4506a54ee3418665,
         free: &[&[15]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7361,7 +7409,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).f1` in 2D.
     Row {
         name: "_better",
-        hash: 0xfe3af239b9f30035fe2a1c10fe2c81ff,
+        inputs: 6,
+        operations: 24,
+        hash: 0xfa3e6fd5cef9e3194dc77a356b1c5995,
         free: &[&[11]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7396,7 +7446,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).f1` in 2D.
     Row {
         name: "_better",
-        hash: 0x2e2eda68494dfda0fa2c758ef13ae049,
+        inputs: 7,
+        operations: 26,
+        hash: 0xe4efa452c857f6cb482b70b8c5a4ea8e,
         free: &[&[11]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7433,7 +7485,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).f1` in 3D.
     Row {
         name: "_better",
-        hash: 0x6f9eb2f30126b3cdd8a668dbffcebc77,
+        inputs: 8,
+        operations: 33,
+        hash: 0x660b4eb16bea85b0b96746063a17d564,
         free: &[&[15]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7477,7 +7531,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).f1` in 3D.
     Row {
         name: "_better",
-        hash: 0xaffdc9b616499851067978c5d2daaa9b,
+        inputs: 9,
+        operations: 35,
+        hash: 0xc5dab1eaf7e0fed3ce18cb7da830357d,
         free: &[&[15]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7523,7 +7579,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).color.r` in 2D.
     Row {
         name: "_better",
-        hash: 0x4f89bb150b2ea643a62911360381da8a,
+        inputs: 9,
+        operations: 27,
+        hash: 0xf08c24397efc7b86e92fe67f0a112e54,
         free: &[&[11]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7561,7 +7619,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).color.r` in 2D.
     Row {
         name: "_better",
-        hash: 0xc75e1795197606f2b630490de43f244a,
+        inputs: 10,
+        operations: 29,
+        hash: 0xf6c972cdb25cd748a3e6ceeb8a8d20ba,
         free: &[&[11]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7601,7 +7661,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).color.r` in 3D.
     Row {
         name: "_better",
-        hash: 0xb3a487a8a019b914fe2deef4c50462d7,
+        inputs: 12,
+        operations: 37,
+        hash: 0xc4ade3ddb5383941b6c4e080173d2f39,
         free: &[&[15]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]
@@ -7649,7 +7711,9 @@ pub static ROWS: &[Row] = &[
     // `voronoi(p, seed: _).color.r` in 3D.
     Row {
         name: "_better",
-        hash: 0x592759675f2ae2e7a5237205c35c42ad,
+        inputs: 13,
+        operations: 39,
+        hash: 0x81c954f1dc41ddd7b70b95bb7c8ee552,
         free: &[&[15]],
         run: |arguments, mask, out| run(arguments, mask, out,
             #[inline(always)]

@@ -6,7 +6,7 @@ use super::super::plan::{Plan, Planned};
 use super::super::planner::Fuse;
 use super::super::texture;
 use super::range::{Range, ranges};
-use super::shape::{Operand, Operation, Shape, overload};
+use super::shape::{Operand, Operation, Shape};
 use super::{MOST_ARGUMENTS, MOST_OUTPUTS, ROWS, Rows};
 use crate::pass;
 use crate::render::Request;
@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write;
 use std::path::Path;
 use texgraph_compiler::graph::Scalar;
-use texgraph_compiler::intrinsic::{Evaluate, HASH4, LANES, Lanes, MULTIPLY, TO_INT, ZERO};
+use texgraph_compiler::intrinsic::{Evaluate, HASH4, Intrinsic, LANES, Lanes, MULTIPLY, TO_INT, ZERO};
 use texgraph_compiler::module::Loader;
 use texgraph_compiler::{Library, Options, Program, compile};
 
@@ -192,8 +192,9 @@ fn write(made: &Made, to: &mut String) {
         (0..shape.inputs).map(|n| format!("p{n}")).chain((0..free.len()).map(|n| format!("c{n}"))).collect();
     let places: Vec<String> = free.iter().map(|places| format!("&{places:?}")).collect();
     let hash = made.hash();
-    writeln!(to, "    // {title}.\n    Row {{\n        name: {node:?},\n        hash: {hash:#034x},")
-        .unwrap();
+    let (inputs, operations) = (shape.inputs, shape.operations.len());
+    writeln!(to, "    // {title}.\n    Row {{\n        name: {node:?},\n        inputs: {inputs},").unwrap();
+    writeln!(to, "        operations: {operations},\n        hash: {hash:#034x},").unwrap();
     writeln!(to, "        free: &[{}],", places.join(", ")).unwrap();
     writeln!(to, "        run: |arguments, mask, out| run(arguments, mask, out,").unwrap();
     writeln!(to, "            #[inline(always)]\n            |[{}]| {{", arguments.join(", ")).unwrap();
@@ -283,6 +284,12 @@ fn rows_are_up_to_date() {
     assert!(found == text, "rows.rs is stale: run this test with TEXGRAPH_FUSED=write");
 }
 
+/// Which of the rows with its name a row is.
+fn overload(row: Intrinsic) -> usize {
+    let name = row.row().name;
+    Intrinsic::all().take_while(|other| *other != row).filter(|other| other.row().name == name).count()
+}
+
 /// What an operation is worth, by the intrinsics' table.
 fn value(operation: Operation, words: &[u32]) -> Vec<u32> {
     match operation {
@@ -310,7 +317,7 @@ fn rows_are_their_nodes() {
     for made in made() {
         let Made { title, shape, free, .. } = &made;
         let slices: Vec<&[u16]> = free.iter().map(Vec::as_slice).collect();
-        let row = ROWS.iter().find(|row| shape.is(row.hash, row.free) && row.free == slices);
+        let row = ROWS.iter().find(|row| shape.is(row) && row.free == slices);
         let row = row.unwrap_or_else(|| panic!("{title} has no row"));
         let random = |i: usize, k: usize| ((i * 31 + k) as u32).wrapping_mul(2_654_435_769).rotate_left(13);
         for turn in 0..8 {

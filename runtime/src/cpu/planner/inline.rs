@@ -4,6 +4,7 @@
 
 use super::super::plan::{Loop, Planned, Register, Step};
 use super::Planner;
+use std::rc::Rc;
 
 /// The most steps of a function that callers take over, ...
 const MOST_STEPS: usize = 256;
@@ -16,9 +17,9 @@ const MOST_OF_A_FOLD: usize = 2048;
 #[derive(Default)]
 pub struct Bodies {
     /// As planned of arithmetic alone, if it may be one step or part of one, ...
-    pub plain: Option<Body>,
+    pub plain: Option<Rc<Body>>,
     /// ... and as it came out.
-    pub fused: Option<Body>,
+    pub fused: Option<Rc<Body>>,
 }
 
 /// A function's steps before they share registers: each register has one value.
@@ -31,13 +32,15 @@ pub struct Body {
 
 impl Body {
     /// Of a function, if callers are to take it over.
-    pub fn of(planned: &Planned, registers: usize) -> Option<Body> {
+    pub fn of(planned: &Planned, registers: usize) -> Option<Rc<Body>> {
         let is_small = planned.steps.len() <= MOST_STEPS;
-        is_small.then(|| Body {
-            steps: planned.steps.clone(),
-            inputs: planned.inputs,
-            outputs: planned.outputs.clone(),
-            registers,
+        is_small.then(|| {
+            Rc::new(Body {
+                steps: planned.steps.clone(),
+                inputs: planned.inputs,
+                outputs: planned.outputs.clone(),
+                registers,
+            })
         })
     }
 }
@@ -65,24 +68,23 @@ impl Places {
 
 impl Planner<'_> {
     /// What callers take over of a function.
-    fn body(&self, function: usize) -> Option<&Body> {
+    fn body(&self, function: usize) -> Option<&Rc<Body>> {
         let bodies = self.bodies.get(function)?;
         bodies.plain.as_ref().filter(|_| self.plain).or(bodies.fused.as_ref())
     }
 
     /// Does a call's steps here; the outputs. None where the function is too long for that.
     pub(super) fn inlined(&mut self, function: usize, arguments: &[Register]) -> Option<Vec<Register>> {
-        let body = self.body(function)?;
+        let body = self.body(function)?.clone();
         if self.planned.steps.len() + body.steps.len() > MOST_TOGETHER {
             return None;
         }
-        let (steps, outputs) = (body.steps.clone(), body.outputs.clone());
         let mut places = Places(vec![Register::ZERO; body.registers]);
         for (n, argument) in arguments.iter().enumerate().take(body.inputs) {
             places.set(Register::Frame(n as u32), *argument);
         }
-        self.take_over(steps, &mut places);
-        Some(outputs.into_iter().map(|output| places.of(output)).collect())
+        self.take_over(&body.steps, &mut places);
+        Some(body.outputs.iter().map(|output| places.of(*output)).collect())
     }
 
     /// Does all steps of a fold here, which has no condition; its accumulators at the end. None where
@@ -107,17 +109,18 @@ impl Planner<'_> {
     }
 
     /// Adds steps of another function. Arms whose condition is known are taken or left now.
-    fn take_over(&mut self, steps: Vec<Step>, places: &mut Places) {
+    fn take_over(&mut self, steps: &[Step], places: &mut Places) {
         // Whether the arms around a step are still there, ...
         let mut kept = Vec::new();
         // ... and how many of them are inside one that is never taken, that one included.
         let mut left = 0;
-        for mut step in steps {
+        for step in steps {
             if left > 0 {
                 left += usize::from(matches!(step, Step::Arm { .. }));
                 left -= usize::from(matches!(step, Step::Join));
                 continue;
             }
+            let mut step = step.clone();
             step.for_operands(|register| *register = places.of(*register));
             match step {
                 Step::Arm { condition, holds, .. } => match self.bits(condition) {
@@ -148,23 +151,23 @@ impl Planner<'_> {
     fn add(&mut self, mut step: Step, places: &mut Places) {
         let mut known = !matches!(step, Step::Call(_) | Step::Fold(_));
         step.for_operands(|operand| known &= operand.is_known());
-        let mut results = Vec::new();
-        step.retain_targets(|register| {
-            let own = Register::Frame(self.registers as u32);
-            self.registers += 1;
-            results.push((*register, own));
-            *register = own;
-            true
-        });
-        let (theirs, ours): (Vec<Register>, Vec<Register>) = results.into_iter().unzip();
-        let ours = if known {
-            self.compute(step, &ours)
+        if known {
+            let mut results = Vec::new();
+            step.retain_targets(|register| {
+                results.push(*register);
+                true
+            });
+            for (result, number) in results.iter().zip(self.compute(step, &results)) {
+                places.set(*result, number);
+            }
         } else {
+            step.retain_targets(|register| {
+                let own = self.fresh();
+                places.set(*register, own);
+                *register = own;
+                true
+            });
             self.planned.steps.push(step);
-            ours
-        };
-        for (theirs, ours) in theirs.into_iter().zip(ours) {
-            places.set(theirs, ours);
         }
     }
 }
