@@ -1,6 +1,7 @@
 //! Expressions: names and fields; what else there is stands in files of its own.
 
 use super::constructor::view_field;
+use super::frame::Progress;
 use super::types;
 use super::wire::Wire;
 use super::{Checker, Frame};
@@ -113,7 +114,7 @@ impl<'a> Checker<'a> {
 
     fn postfix(&mut self, f: &mut Frame<'a>, base: &'a Expr, links: &'a [Postfix]) -> Wire {
         let (mut next, mut wire) = match f.progress.get(&links.as_ptr()).filter(|_| f.foreign == 0) {
-            Some((next, wire)) => (*next, wire.clone()),
+            Some(progress) => (progress.next, progress.wire.clone()),
             None => self.first_link(f, base, links),
         };
         while let Some(link) = links.get(next) {
@@ -123,7 +124,7 @@ impl<'a> Checker<'a> {
             }
             let before = links[..next].last().map_or(base.span, end_of);
             let place = self.place(f, base.span.to(before));
-            let waiting = f.waiting.len();
+            let (waiting, values) = (f.waiting.len(), f.builder.function().values.len());
             let result = match link {
                 Postfix::Field(name) => self.field(f, wire.clone(), name),
                 Postfix::Method(call, span) => self.method(f, wire.clone(), place, call, *span),
@@ -132,7 +133,7 @@ impl<'a> Checker<'a> {
             if f.waiting.len() > waiting {
                 // While something waits, folds do, and lists of them are to be made again.
                 if f.foreign == 0 && waiting == 0 && !matches!(wire, Wire::Unknown) {
-                    f.progress.insert(links.as_ptr(), (next, wire));
+                    f.progress.insert(links.as_ptr(), Progress { next, wire, values });
                 }
                 return Wire::Unknown;
             }

@@ -31,6 +31,16 @@ pub enum Target<'a> {
     Tiles(usize),
 }
 
+/// How far a chain of methods has come.
+pub struct Progress {
+    /// The link that is next.
+    pub(super) next: usize,
+    /// What it is asked of.
+    pub(super) wire: Wire,
+    /// How many values there were by then.
+    pub(super) values: usize,
+}
+
 /// A function in the making.
 pub struct Frame<'a> {
     /// None for the `let`s and params of a file.
@@ -61,7 +71,7 @@ pub struct Frame<'a> {
     pub(super) failed: bool,
     /// How far chains of methods in the current step have come, by their first link: a step that
     /// waited goes on from there.
-    pub(super) progress: FxHashMap<*const Postfix, (usize, Wire)>,
+    pub(super) progress: FxHashMap<*const Postfix, Progress>,
     /// Expressions are evaluated for other names than the step's own: a fold's body, a default.
     pub(super) foreign: u32,
     /// The defaults that are being evaluated, each for the one before.

@@ -13,6 +13,7 @@ impl<'a> Checker<'a> {
         while let Some(step) = f.order.get(f.next) {
             let Step { target, value } = f.steps[*step];
             let (mark, failed, unknown) = (self.diagnostics.len(), f.failed, f.unknown.len());
+            let values = f.builder.function().values.len();
             f.current = target.name();
             let wire = match target {
                 Target::Render(item) => self.render_node(f, item),
@@ -23,6 +24,9 @@ impl<'a> Checker<'a> {
                 self.diagnostics.truncate(mark);
                 f.unknown.truncate(unknown);
                 f.failed = failed;
+                // Values stand in the order of a step that finds everything made.
+                let kept = f.progress.values().map(|progress| progress.values).max().unwrap_or(0);
+                f.builder.rewind(kept.max(values));
                 return false;
             }
             self.finish_step(f, target, value, wire);
@@ -135,5 +139,47 @@ impl<'a> Checker<'a> {
                 None => Wire::Unknown,
             };
         self.bind(f, name, wire);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::library::Library;
+    use crate::{Options, compile};
+    use std::collections::HashMap;
+
+    const TEXT: &str = "
+node inner(x: float) -> (y: float) {
+    let s = sin(x)
+    y = s * s + s
+}
+
+node outer(x: float) -> (y: float) {
+    let a = x * 3.0
+    y = inner(a + 1.0) * 2.0 + tan(x) * cos(a)
+}
+
+texture waits(uv: vec2) -> (v: float) {
+    v = outer(uv.x)
+}
+
+texture finds(uv: vec2) -> (v: float) {
+    let before = inner(uv.y)
+    v = outer(uv.x) + before
+}
+";
+
+    #[test]
+    fn a_node_is_the_same_whether_or_not_it_waited() {
+        let library = Library::standard().unwrap();
+        let files: HashMap<String, String> = [("t.tex".to_owned(), TEXT.to_owned())].into();
+        let [waits, finds] = ["waits", "finds"].map(|texture| {
+            let options = Options { texture: Some(texture.to_owned()), ..Options::default() };
+            let program = compile(&library, "t.tex", &files, &options).unwrap().program;
+            let wgsl = program.passes[0].wgsl.replace(texture, "");
+            let (_, outer) = wgsl.split_once("fn _outer(").expect("it is a function");
+            outer.split_once("\n}").expect("it ends").0.to_owned()
+        });
+        assert_eq!(waits, finds);
     }
 }

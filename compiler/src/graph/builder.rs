@@ -114,6 +114,19 @@ impl Builder {
         value
     }
 
+    /// Leaves the first so many values, as if those behind them had never been made. Nothing may use them.
+    pub fn rewind(&mut self, values: usize) {
+        while self.function.values.len() > values {
+            let value = Value(self.function.values.len() as u32 - 1);
+            if let Some(operation) = self.function.values.pop() {
+                self.known.remove(&operation, value);
+            }
+        }
+        self.function.types.truncate(values);
+        self.function.places.truncate(values);
+        self.function.names.truncate(values);
+    }
+
     /// A new input.
     pub fn input(&mut self, name: impl Into<SmolStr>, ty: Type) -> Value {
         let position = self.function.inputs.len() as u32;

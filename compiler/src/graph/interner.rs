@@ -31,9 +31,7 @@ impl Interner {
     /// # Errors
     /// It has none.
     pub fn find(&self, operation: &Operation, arena: &[Operation]) -> Result<Value, Vacant> {
-        let mut hasher = FxHasher::default();
-        operation.hash(&mut hasher);
-        let hash = hasher.finish() as u32;
+        let hash = hash_of(operation);
         let is_it = |entry: &Entry| entry.hash == hash && arena[entry.value.0 as usize] == *operation;
         self.0.find(widened(hash), is_it).map_or(Err(Vacant(hash)), |entry| Ok(entry.value))
     }
@@ -42,6 +40,19 @@ impl Interner {
     pub fn insert(&mut self, Vacant(hash): Vacant, value: Value) {
         self.0.insert_unique(widened(hash), Entry { hash, value }, |entry| widened(entry.hash));
     }
+
+    /// Forgets a value and its operation.
+    pub fn remove(&mut self, operation: &Operation, value: Value) {
+        if let Ok(entry) = self.0.find_entry(widened(hash_of(operation)), |entry| entry.value == value) {
+            entry.remove();
+        }
+    }
+}
+
+fn hash_of(operation: &Operation) -> u32 {
+    let mut hasher = FxHasher::default();
+    operation.hash(&mut hasher);
+    hasher.finish() as u32
 }
 
 /// The table looks at the first and the last bits of a hash.

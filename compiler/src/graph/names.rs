@@ -32,6 +32,11 @@ impl Names {
         self.0.get_mut(value.0 as usize)?.take()
     }
 
+    /// Leaves the first so many values their names.
+    pub fn truncate(&mut self, values: usize) {
+        self.0.truncate(values);
+    }
+
     /// The named values in order, each with its name.
     pub fn iter(&self) -> impl Iterator<Item = (Value, &Arc<str>)> {
         (0..).map(Value).zip(&self.0).filter_map(|(value, name)| Some((value, name.as_ref()?)))
