@@ -45,7 +45,8 @@ pub use wire::Key;
 use crate::ahead::Ahead;
 use crate::diagnostic::{Diagnostic, Place, limits, names};
 use crate::graph::{
-    Builder, Constant, Function, FunctionId, Graph, Param, ParamId, PassGraph, ResourceView, Type, ViewId,
+    Builder, Constant, Function, FunctionId, Graph, Operation, Param, ParamId, PassGraph, ResourceView, Type,
+    ViewId,
 };
 use crate::library::{Callable, Library};
 use crate::module::Module;
@@ -326,6 +327,9 @@ impl<'a> Checker<'a> {
                 _ => f.failed = true,
             }
         }
+        if passes_on(f.builder.function()) {
+            f.builder.set_inline(true);
+        }
         let outcome = if f.failed { Outcome::Failed } else { Outcome::Made(self.intern(f.builder.finish())) };
         self.made.insert(key, outcome);
     }
@@ -421,6 +425,16 @@ impl<'a> Checker<'a> {
         let id = Some(resource);
         Wire::Resource(Rc::new(ResourceWire { kind: *kind, id, views, constants: constants.clone() }))
     }
+}
+
+/// Whether all that a function does is to call another.
+fn passes_on(function: &Function) -> bool {
+    let is_call = |operation: &&Operation| matches!(operation, Operation::Call(..));
+    let is_free = |operation: &Operation| {
+        matches!(operation, Operation::Input(_) | Operation::Constant(_) | Operation::Output(..))
+    };
+    function.values.iter().filter(is_call).count() == 1
+        && function.values.iter().all(|operation| is_free(operation) || is_call(&operation))
 }
 
 fn structure(function: &Function) -> u64 {

@@ -182,4 +182,28 @@ texture finds(uv: vec2) -> (v: float) {
         });
         assert_eq!(waits, finds);
     }
+    #[test]
+    fn what_only_calls_another_is_taken_over() {
+        let library = Library::standard().unwrap();
+        let text = "texture t(uv: vec2) -> (v: float) { v = noise(uv, width: 0.0) }";
+        let files: HashMap<String, String> = [("t.tex".to_owned(), text.to_owned())].into();
+        let program = compile(&library, "t.tex", &files, &Options::default()).unwrap().program;
+        let wgsl = &program.passes[0].wgsl;
+        assert_eq!(wgsl.matches("fn t_noise").count(), 1, "{wgsl}");
+    }
+
+    #[test]
+    fn bits_are_compared_with_0_where_they_stand() {
+        let library = Library::standard().unwrap();
+        let text = "texture t(uv: vec2) -> (v: float) {
+    let n = ifloor(uv.x * 100.0)
+    v = (if bits(n, 3, 2) != 0 { 1.0 } else { 0.0 }) + (if bits(n, 30, 2) == 0 { 1.0 } else { 0.0 })
+}";
+        let files: HashMap<String, String> = [("t.tex".to_owned(), text.to_owned())].into();
+        let program = compile(&library, "t.tex", &files, &Options::default()).unwrap().program;
+        let wgsl = &program.passes[0].wgsl;
+        assert!(wgsl.contains("(n & 24i) != 0i"), "{wgsl}");
+        // The sign is no bit of a positive mask.
+        assert!(wgsl.contains("((n >> 30u) & 3i) == 0i"), "{wgsl}");
+    }
 }

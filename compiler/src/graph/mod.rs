@@ -378,7 +378,8 @@ pub struct Function {
     pub names: Names,
     /// Where a value was first written.
     pub places: Vec<Place>,
-    /// Written as a single expression: callers take its operations over instead of calling it.
+    /// Written as a single expression, or nothing but a call of another: callers take its operations over
+    /// instead of calling it.
     pub inline: bool,
     /// Which function of the library it is, if it still is what the library made of it.
     pub origin: Option<Origin>,

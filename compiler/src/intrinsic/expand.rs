@@ -4,7 +4,7 @@
 //! operation with constant operands that the shader language forbids is ever emitted.
 
 use super::*;
-use crate::graph::{Builder, Constant, Operation, Scalar, Value};
+use crate::graph::{Builder, Constant, Operation, Scalar, Type, Value};
 
 /// Values of one shape, made tersely.
 struct Shape<'a> {
@@ -361,14 +361,34 @@ pub fn equal(b: &mut Builder, v: &[Value]) -> Value {
         Some(Scalar::Bool) => COMPONENT_EQUAL_BOOL,
         _ => COMPONENT_EQUAL,
     };
-    let each = b.builtin(intrinsic, v);
+    let v = in_place(b, v);
+    let each = b.builtin(intrinsic, &v);
     if b.ty(each).width() == 1 { each } else { b.builtin(ALL, &[each]) }
 }
 
 /// The negation of [`equal`].
 pub fn not_equal(b: &mut Builder, v: &[Value]) -> Value {
+    if b.ty(v[0]) == Type::Vector(Scalar::Int, 1) {
+        let v = in_place(b, v);
+        return b.builtin(COMPONENT_UNEQUAL_INT, &v);
+    }
     let same = equal(b, v);
     b.builtin(NOT, &[same])
+}
+
+/// What is compared; of bits with 0 those bits where they stand, which need not be shifted down.
+fn in_place(b: &mut Builder, v: &[Value]) -> [Value; 2] {
+    let whole = [v[0], v[1]];
+    let number = |value: Value| b.as_constant(value).filter(|c| c.width() == 1).map(|c| c.int(0));
+    let Operation::Builtin(BITWISE_AND, masked) = b.operation(v[0]) else { return whole };
+    let Operation::Builtin(SHIFT_RIGHT, shifted) = b.operation(masked[0]) else { return whole };
+    let (from, &[of, first]) = (number(v[1]), &shifted[..]) else { return whole };
+    let (Some(0), Some(first), Some(mask)) = (from, number(first), number(masked[1])) else { return whole };
+    // The sign, which the shift drags along, is no bit of the mask's.
+    let there = (0..31).contains(&first).then(|| i64::from(mask) << first);
+    let Some(there) = there.filter(|there| (1..=i64::from(i32::MAX)).contains(there)) else { return whole };
+    let mask = b.constant(Constant::ints(&[there as i32]));
+    [b.builtin(BITWISE_AND, &[of, mask]), v[1]]
 }
 
 /// A component by a computed index, clamped: a chain of choices, the shader's own is a trap.

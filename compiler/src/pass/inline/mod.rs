@@ -1,4 +1,5 @@
-//! A node written as a single expression is taken over by its callers; any other stays a function.
+//! A node written as a single expression, or that comes to one call, is taken over by its callers; any
+//! other stays a function.
 //! A fold of a few known steps is written out: its body is taken over once for each, with the
 //! number of the step a constant, so a one-octave fBm has no loop. Functions that nothing needs are
 //! dropped.
