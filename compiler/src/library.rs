@@ -33,6 +33,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/bombing.tex", include_str!("../std/bombing.tex")),
     ("std/stone.tex", include_str!("../std/stone.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),
+    ("std/stochastic.tex", include_str!("../std/stochastic.tex")),
     ("std/filtering.tex", include_str!("../std/filtering.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),
     ("std/matrix.tex", include_str!("../std/matrix.tex")),

@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, FunctionId, Scalar, Texel, View, ViewDimension};
 use crate::manifest::{Encoding, Filter, Format, Recipe, Space, Stop, Wrap};
 
+mod exemplar;
 mod indices;
 mod materials;
 pub mod pixel_map;
@@ -509,6 +510,24 @@ pub static KINDS: &[Kind] = &[
         make: make_ramp,
     },
     Kind {
+        name: "exemplar",
+        constructor: "(path: text, encoding: srgb | linear | normal = srgb, channels: int = 3, \
+                      wrap: auto | repeat | inside = auto, lut: int = 256, anisotropy: int = 1) -> exemplar",
+        doc: "A photograph whose parts `stochastic` tiles and blends without end.",
+        gives: None,
+        fields: &[
+            Field { name: "gaussian", kind: FieldKind::View(PIXELS) },
+            Field { name: "inverse", kind: FieldKind::View(PIXELS) },
+            Field { name: "channels", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
+            Field { name: "inside", kind: FieldKind::Constant },
+            Field { name: "width", kind: FieldKind::Constant },
+            Field { name: "levels", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: exemplar::make,
+    },
+    Kind {
         name: "bake",
         constructor: "(field: node(uv: vec2) -> texel, size: ivec2 = 512, \
                       wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
@@ -528,7 +547,7 @@ pub fn made_by(row: usize) -> usize {
 }
 
 /// Kinds of the language that are not built yet.
-pub const LATER: &[&str] = &["images", "volume", "exemplar", "sprites"];
+pub const LATER: &[&str] = &["images", "volume", "sprites"];
 
 /// Kinds that have a dimension. In two it need not be written, in others it is part of the name.
 pub const DIMENSIONAL: &[&str] = &["indices", "patterns"];

@@ -1,6 +1,7 @@
 //! Sentences about constructors' arguments: what can be told without opening a file.
 
 use super::{Diagnostic, Place, Suggestion};
+use crate::manifest::Encoding;
 
 /// A number that an argument can't have.
 pub fn out_of_bounds(place: Place, what: &str, found: i32, low: i32, high: i32) -> Diagnostic {
@@ -127,6 +128,15 @@ pub fn not_known(place: Place, input: &str) -> Diagnostic {
 pub fn anisotropy_of_nearest(place: Place) -> Diagnostic {
     Diagnostic::new("E0556", place, "with `filter: nearest` there is no anisotropy", "only 1 is possible")
         .help("leave `anisotropy:` or `filter:` out")
+}
+
+/// Channels of an exemplar that its encoding does not have.
+pub fn channels_of_exemplar(place: Place, asked: u32, encoding: Encoding) -> Diagnostic {
+    let (of, fit) = match encoding {
+        Encoding::Normal => ("normals", "normals have 2, their slopes"),
+        Encoding::Srgb | Encoding::Linear => ("a picture", "use 3, or 1 of a grey picture"),
+    };
+    Diagnostic::new("E0556", place, format!("an exemplar of {of} can't have {asked} channels"), fit)
 }
 
 /// A probability of neither a list nor weights, or of both.

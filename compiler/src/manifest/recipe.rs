@@ -164,6 +164,25 @@ pub enum Recipe {
         /// Between stops.
         space: Space,
     },
+    /// A picture to be tiled and blended (Deliot & Heitz 2019). Field `gaussian`: the picture with each
+    /// of its decorrelated channels made Gaussian, of mean ½ and deviation 1/6 cut to 0..1, mipmapped;
+    /// alpha as it is. Field `inverse`: `lut` texels across, a row for each of
+    /// [`Recipe::INVERSE_LEVELS`] levels of channel 0, then of channel 1, and so on: what the channel
+    /// adds to the colour (linear light, not premultiplied; of normals their slopes) where its Gaussian
+    /// number is (x + ½)/`lut`, filtered as that level is; rows beyond the last level repeat it. Its
+    /// alpha is 1 where parts must not cross the picture's borders, else 0.
+    Exemplar {
+        /// The picture file.
+        path: String,
+        /// How its numbers are read.
+        encoding: Encoding,
+        /// How many channels are used: 3, 1 of a grey picture, 2 of normals.
+        channels: u32,
+        /// Whether parts may cross the picture's borders.
+        borders: Borders,
+        /// Texels across `inverse`, 128 to 1024.
+        lut: u32,
+    },
     /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
     /// compiling.
     Bake {
@@ -177,6 +196,8 @@ pub enum Recipe {
 impl Recipe {
     /// The most entries of a permutation in a row of the shared tables.
     pub const ROW: u32 = 4096;
+    /// How many rows a channel of an exemplar has in `inverse`: what a side of 8192 texels needs.
+    pub const INVERSE_LEVELS: u32 = 14;
     /// The largest permutation.
     pub const MAX_PERMUTATION: u32 = 65_536;
 
@@ -187,6 +208,18 @@ impl Recipe {
             _ => 1,
         }
     }
+}
+
+/// Whether parts of an exemplar may cross the borders of its picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Borders {
+    /// As the picture needs it: inside, where opposite borders differ more than neighbours do.
+    Auto,
+    /// They may: the picture wraps.
+    Repeat,
+    /// They may not.
+    Inside,
 }
 
 /// A colour of a ramp.

@@ -29,6 +29,12 @@ enum Samples {
 }
 
 impl Decoded {
+    /// A picture of three 8-bit samples a texel, row by row; none if there are more or fewer than that.
+    pub fn rgb(size: [u32; 2], samples: Vec<u8>) -> Option<Decoded> {
+        let texels = size[0] as usize * size[1] as usize;
+        (samples.len() == 3 * texels).then_some(Decoded { size, channels: 3, samples: Samples::Eight(samples) })
+    }
+
     /// Whether a sample has 16 bits rather than 8.
     pub fn is_deep(&self) -> bool {
         matches!(self.samples, Samples::Sixteen(_))
@@ -37,6 +43,22 @@ impl Decoded {
     /// The greatest sample: 255 or 65535.
     pub fn white(&self) -> u16 {
         if self.is_deep() { u16::MAX } else { u16::from(u8::MAX) }
+    }
+
+    /// Whether there is a channel of alpha.
+    pub fn has_alpha(&self) -> bool {
+        matches!(self.channels, 2 | 4)
+    }
+
+    /// Gives so many texels to a function with their number from 0 on, row by row from the `first` on:
+    /// as [`Decoded::texel`] gives them, faster.
+    pub fn read(&self, first: usize, count: usize, mut each: impl FnMut(usize, [u16; 4])) {
+        let (white, channels) = (self.white(), self.channels);
+        let range = first * channels..(first + count) * channels;
+        match &self.samples {
+            Samples::Eight(samples) => read_texels(&samples[range], channels, white, &mut each),
+            Samples::Sixteen(samples) => read_texels(&samples[range], channels, white, &mut each),
+        }
     }
 
     /// Red, green, blue and alpha as stored. Grey gives (v, v, v); without alpha it is white.
@@ -52,6 +74,26 @@ impl Decoded {
             3 => [s(0), s(1), s(2), self.white()],
             _ => [s(0), s(1), s(2), s(3)],
         }
+    }
+}
+
+fn read_texels<T: Copy + Into<u16>>(
+    samples: &[T],
+    channels: usize,
+    white: u16,
+    each: &mut impl FnMut(usize, [u16; 4]),
+) {
+    match channels {
+        1 => samples.iter().enumerate().for_each(|(i, s)| each(i, [(*s).into(), (*s).into(), (*s).into(), white])),
+        2 => samples.as_chunks().0.iter().enumerate().for_each(|(i, [s, a])| {
+            each(i, [(*s).into(), (*s).into(), (*s).into(), (*a).into()]);
+        }),
+        3 => samples.as_chunks().0.iter().enumerate().for_each(|(i, [r, g, b])| {
+            each(i, [(*r).into(), (*g).into(), (*b).into(), white]);
+        }),
+        _ => samples.as_chunks().0.iter().enumerate().for_each(|(i, [r, g, b, a])| {
+            each(i, [(*r).into(), (*g).into(), (*b).into(), (*a).into()]);
+        }),
     }
 }
 

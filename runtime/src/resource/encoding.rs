@@ -23,6 +23,16 @@ pub fn format(encoding: Encoding, deep: bool) -> Format {
     }
 }
 
+/// What samples of red, green or blue stand for in an encoding, from 0 to the greatest.
+pub fn curve(encoding: Encoding, white: u16) -> Vec<f32> {
+    let meaning = |sample: f64| match encoding {
+        Encoding::Srgb => srgb_to_linear(sample),
+        Encoding::Linear => sample,
+        Encoding::Normal => 2.0 * sample - 1.0,
+    };
+    (0..=white).map(|code| meaning(f64::from(code) / f64::from(white)) as f32).collect()
+}
+
 /// Reads the texels of pictures in one encoding as the numbers that are filtered.
 pub struct Reader<'a> {
     picture: &'a Decoded,
@@ -34,14 +44,7 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// Prepares to read a picture.
     pub fn new(picture: &'a Decoded, encoding: Encoding) -> Reader<'a> {
-        let white = f64::from(picture.white());
-        let meaning = |sample: f64| match encoding {
-            Encoding::Srgb => srgb_to_linear(sample),
-            Encoding::Linear => sample,
-            Encoding::Normal => 2.0 * sample - 1.0,
-        };
-        let curve = (0..=picture.white()).map(|code| meaning(f64::from(code) / white) as f32);
-        Reader { picture, encoding, curve: curve.collect() }
+        Reader { picture, encoding, curve: curve(encoding, picture.white()) }
     }
 
     /// A texel: linear premultiplied light, data as it is, or a normal with alpha 1.

@@ -6,6 +6,7 @@
 
 pub(crate) mod decode;
 mod encoding;
+pub mod exemplar;
 mod image;
 mod indices;
 mod materials;
@@ -21,14 +22,15 @@ mod shape;
 pub(crate) mod table;
 mod tables;
 
+pub use decode::Decoded;
 pub use encoding::{SrgbEncoder, srgb_to_linear};
+pub use table::Made;
 pub(crate) use table::MAX_LAYERS;
 
 use crate::project::Project;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use shape::Shape;
 use std::sync::Arc;
-use table::Made;
 use texgraph_compiler::Program;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
 use texgraph_compiler::manifest::{Manifest, Recipe, Resource};
@@ -128,6 +130,10 @@ fn make(
         Recipe::PixelMap { path, block, levels } => pixel_map::make(project, place, path, *block, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
         Recipe::Tables { rows } => tables::make(place, rows, known),
+        Recipe::Exemplar { path, encoding, channels, borders, lut } => {
+            let (encoding, channels, borders, lut) = (*encoding, *channels, *borders, *lut);
+            exemplar::make(project, place, path, &exemplar::Wanted { encoding, channels, borders, lut })
+        }
         // Made by rendering its pass.
         Recipe::Bake { .. } => Ok(Vec::new()),
     }

@@ -26,6 +26,37 @@ pub fn build(
     build_blocks(field, format, size, [layers, 1], texel)
 }
 
+/// Builds the further levels of a picture of 8-bit numbers whose level 0 `write` writes. `visit` sees
+/// each of them before it is rounded, the largest first.
+pub fn extend(
+    field: &'static str,
+    size: [u32; 2],
+    write: impl FnOnce(&mut [u8]),
+    mut visit: impl FnMut(&[Vec4]),
+) -> Made {
+    let table = Table::mipmapped(Format::Rgba8Unorm, size, 1);
+    let mut bytes = vec![0; table.bytes() as usize];
+    let writer = Writer::new(Format::Rgba8Unorm);
+    let (first, mut rest) = bytes.split_at_mut(size[0] as usize * size[1] as usize * 4);
+    write(first);
+    let (texels, _) = first.as_chunks::<4>();
+    let mut above: Option<Plane> = None;
+    for level in &table.levels[1..] {
+        let plane = match &above {
+            None => halve(size, |x, y| {
+                let [r, g, b, a] = texels[y as usize * size[0] as usize + x as usize];
+                Vec4::new(f32::from(r), f32::from(g), f32::from(b), f32::from(a)) / 255.0
+            }),
+            Some(above) => halve(above.size, |x, y| above.texel(x, y)),
+        };
+        visit(&plane.texels);
+        let (this, further) = rest.split_at_mut(level.bytes_per_row as usize * level.height as usize);
+        write_level(&writer, plane.size[0], this, |x, y| plane.texel(x, y));
+        (rest, above) = (further, Some(plane));
+    }
+    Made { field, table, bytes }
+}
+
 /// Builds all levels of blocks, each of so many layers, its slices. Level l of a slice is the mean of
 /// the group of 2^l slices that it belongs to, counted from the block's first; of those there are.
 pub fn build_blocks(

@@ -93,6 +93,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::Positions { .. } => ("cells", ViewDimension::D2Array, SampleKind::Int),
         Recipe::PixelMap { .. } => ("blocks", ViewDimension::D2, SampleKind::Int),
         Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),
+        Recipe::Exemplar { .. } => ("gaussian", ViewDimension::D2, SampleKind::Float),
         Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
     };
     let sampler =
