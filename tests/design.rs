@@ -14,14 +14,12 @@ use texgraph_compiler::{Library, check};
 /// Constructors of kinds to come, and what they are read as.
 const STAND_INS: &[(&str, &str)] = &[
     ("probability(weights: [8, 8, 4, 4, 1, 1, 1, 1], size: 64)", "indices([[0]])"),
-    ("exemplar(", "image("),
     ("sprites(\"snake.ron\", patterns: scale, branching: 4, overlap: 12)", "patterns(\"scale.png\")"),
     ("positions(\"decals.ron\", grid: ivec2(128, 128), patterns: decal)", "patterns(\"decals.png\")"),
 ];
 
 /// Nodes to come, with the heads that the examples call.
 const NODES: &str = r"
-node stochastic(e: image, p: vec2) -> (color: color) { color = e.sample(p) }
 node positioned(p: patterns, uv: vec2) -> (color: color) { color = p.reference(0, uv) }
 node composite(p: patterns, at: vec3, blend: over | blobby = over, stretch: float = 0.0) -> (color: color) {
     color = p.reference(0, at.xy) * stretch

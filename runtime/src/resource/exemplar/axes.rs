@@ -12,6 +12,8 @@ pub struct Axes {
     pub directions: [[f32; MAX_CHANNELS]; MAX_CHANNELS],
     /// The mean of all texels.
     pub mean: [f64; MAX_CHANNELS],
+    /// The variance along each axis.
+    pub variances: [f64; MAX_CHANNELS],
 }
 
 /// Sums over texels: of each number, and of the products xx, xy, xz, yy, yz, zz.
@@ -36,13 +38,15 @@ impl Axes {
             covariance[(i, j)] = shared;
             covariance[(j, i)] = shared;
         }
+        let mut variances = [covariance[(0, 0)], 0.0, 0.0];
         let mut directions = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         // A line needs none, and what a plane lacks is its own axis.
         if light.channels > 1 {
             let eigen = SymmetricEigen::new(covariance);
             let mut order = [0, 1, 2];
             order.sort_by(|i, j| eigen.eigenvalues[*j].total_cmp(&eigen.eigenvalues[*i]));
-            for (direction, i) in directions.iter_mut().zip(order) {
+            for ((direction, variance), i) in directions.iter_mut().zip(&mut variances).zip(order) {
+                *variance = eigen.eigenvalues[i];
                 let vector = eigen.eigenvectors.column(i);
                 // Of the two senses the one whose longest component is positive.
                 let longest = vector.iter().fold(0.0_f64, |most, x| if x.abs() > most.abs() { *x } else { most });
@@ -50,7 +54,7 @@ impl Axes {
                 *direction = [0, 1, 2].map(|k| (vector[k] * sense) as f32);
             }
         }
-        Axes { channels: light.channels, directions, mean }
+        Axes { channels: light.channels, directions, mean, variances }
     }
 
     /// Where numbers lie along an axis.
@@ -61,6 +65,16 @@ impl Axes {
             2 => (0..BATCH).for_each(|i| places[i] = numbers[0][i] * x + numbers[1][i] * y),
             _ => (0..BATCH)
                 .for_each(|i| places[i] = numbers[0][i] * x + numbers[1][i] * y + numbers[2][i] * z),
+        }
+    }
+
+    /// Where the numbers of one texel of a batch lie along an axis.
+    pub fn place(&self, axis: usize, numbers: &Numbers, i: usize) -> f32 {
+        let [x, y, z] = self.directions[axis];
+        match self.channels {
+            1 => numbers[0][i],
+            2 => numbers[0][i] * x + numbers[1][i] * y,
+            _ => numbers[0][i] * x + numbers[1][i] * y + numbers[2][i] * z,
         }
     }
 

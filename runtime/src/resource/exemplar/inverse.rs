@@ -20,6 +20,9 @@ use texgraph_compiler::manifest::{Format, Recipe, Table};
 /// How finely T⁻¹ is averaged, at least: entries from 0 to 1.
 const FINE: u32 = 1024;
 
+/// Sums that run side by side.
+const LANES: usize = 8;
+
 /// The means of the squares of a level's first three numbers.
 pub fn mean_squares(level: &[Vec4]) -> DVec3 {
     let rows = level.chunks(1024).map(|texels| {
@@ -78,6 +81,8 @@ struct Curve {
 impl Curve {
     fn new(ranks: &Ranks, channel: usize, width: u32) -> Curve {
         let parts = FINE.div_ceil(width);
+        // So that lanes fill it.
+        let parts = if (parts * width).is_multiple_of(LANES as u32) { parts } else { LANES as u32 };
         let middles = |count: u32| {
             let at = (0..count).map(|i| (f64::from(i) + 0.5) / f64::from(count));
             at.map(|g| ranks.inverse(channel, g)).collect::<Vec<f64>>()
@@ -101,10 +106,17 @@ impl Curve {
         let weights: Vec<f64> = (0..2 * reach).map(weight).collect();
         let entry = |i: usize| {
             let weights = &weights[reach - i * self.parts..][..reach];
-            let sums = weights.iter().zip(&self.fine).fold((0.0, 0.0), |(sum, whole), (weight, value)| {
-                (sum + weight * value, whole + weight)
-            });
-            sums.0 / sums.1
+            let sums = weights.as_chunks::<LANES>().0.iter().zip(self.fine.as_chunks::<LANES>().0).fold(
+                [[0.0; LANES]; 2],
+                |[sums, wholes], (weights, values)| {
+                    [
+                        std::array::from_fn(|lane| sums[lane] + weights[lane] * values[lane]),
+                        std::array::from_fn(|lane| wholes[lane] + weights[lane]),
+                    ]
+                },
+            );
+            let [sum, whole] = sums.map(|lanes| lanes.iter().sum::<f64>());
+            sum / whole
         };
         (0..self.width as usize).map(entry).collect()
     }

@@ -19,7 +19,7 @@ const BINS: usize = 1 << 16;
 const BAND: usize = 1024 * BATCH;
 
 /// A channel that spreads no further is flat: half the least step of 8-bit sRGB.
-const FLAT: f32 = 1.5e-4;
+const FLAT: f64 = 1.5e-4;
 
 /// The stored number of a flat channel, the mean of all.
 const MIDDLE: u8 = 128;
@@ -32,31 +32,41 @@ pub struct Ranks {
 
 /// One channel.
 struct Channel {
-    /// The least number that there can be, and bins for each unit above it.
-    low: f32,
-    scale: f32,
+    scale: Scale,
     /// The bin of each texel.
     bins: Vec<u16>,
     /// How many texels are in the bins before each bin, and last how many there are.
     before: Vec<u32>,
-    /// What each bin is stored as.
-    codes: Vec<Code>,
+    /// The number that each bin is stored as; from [`STEPPED`] on the place of its steps.
+    codes: Vec<u16>,
+    steps: Vec<Steps>,
     /// How many texels are stored as each number.
     stored: Vec<u32>,
+    is_flat: bool,
 }
+
+/// Codes from here on are of bins that hold several numbers.
+const STEPPED: u16 = 256;
 
 /// What the texels of a bin are stored as.
-#[derive(Clone)]
-enum Code {
-    /// All as one number.
-    One(u8),
-    /// As this number, plus 1 for each of the keys that is not above the texel's.
-    Steps(u8, Vec<u64>),
+struct Steps {
+    /// The bin's first number.
+    first: u8,
+    /// Plus 1 for each of these keys that is not above a texel's.
+    keys: Vec<u64>,
 }
 
-/// The order of a texel: first by its number, not below 0, then hashed.
-fn key(number: f32, texel: usize) -> u64 {
-    (u64::from(number.to_bits()) << 32) | u64::from(scatter(texel as u32))
+/// Which numbers a bin holds. Most lie where most texels do.
+#[derive(Clone, Copy)]
+struct Scale {
+    /// The least number that there can be.
+    low: f32,
+    /// The ends of the fine bins.
+    fine: [f32; 2],
+    /// Bins for each unit, between those ends and beyond them.
+    bins: [f32; 2],
+    /// The first fine bin.
+    first: f32,
 }
 
 /// The order of equal values, by the number of their texel: a permutation of all 32-bit integers
@@ -83,43 +93,33 @@ impl Ranks {
     pub fn write(&self, light: &Light<'_>, axes: &Axes, bytes: &mut [u8]) {
         bytes.par_chunks_mut(BAND * 4).enumerate().for_each(|(band, bytes)| {
             let mut numbers = NONE;
-            let (mut places, mut alpha) = ([0.0; BATCH], [0; BATCH]);
+            let mut alpha = [0; BATCH];
             for (batch, bytes) in bytes.chunks_mut(BATCH * 4).enumerate() {
-                let first = band * BAND + batch * BATCH;
-                let count = bytes.len() / 4;
-                let mut is_read = false;
+                let (first, count) = (band * BAND + batch * BATCH, bytes.len() / 4);
+                let (texels, _) = bytes.as_chunks_mut::<4>();
                 for (axis, channel) in self.channels.iter().enumerate() {
                     let bins = &channel.bins[first..first + count];
-                    let mut is_ordered = false;
-                    for (i, (bin, texel)) in bins.iter().zip(bytes.chunks_exact_mut(4)).enumerate() {
-                        texel[axis] = match &channel.codes[usize::from(*bin)] {
-                            Code::One(code) => *code,
-                            Code::Steps(code, keys) => {
-                                if !is_read {
-                                    light.read(first, count, &mut numbers);
-                                    is_read = true;
-                                }
-                                if !is_ordered {
-                                    axes.along(axis, &numbers, &mut places);
-                                    is_ordered = true;
-                                }
-                                let key = key(places[i] - channel.low, first + i);
-                                code + keys.iter().filter(|step| **step <= key).count() as u8
+                    for (i, (bin, texel)) in (first..).zip(bins.iter().zip(&mut *texels)) {
+                        let code = channel.codes[usize::from(*bin)];
+                        texel[axis] = match code {
+                            ..STEPPED => code as u8,
+                            _ => {
+                                light.read(i, 1, &mut numbers);
+                                let key = channel.scale.key(axes.place(axis, &numbers, 0), i);
+                                channel.steps[usize::from(code - STEPPED)].at(key)
                             }
                         };
                     }
                 }
                 light.alpha(first, count, &mut alpha);
-                for (texel, alpha) in bytes.chunks_exact_mut(4).zip(alpha) {
-                    texel[3] = alpha;
-                }
+                texels.iter_mut().zip(alpha).for_each(|(texel, alpha)| texel[3] = alpha);
             }
         });
     }
 
     /// Whether a channel has one number everywhere.
     pub fn is_flat(&self, channel: usize) -> bool {
-        self.channels[channel].is_flat()
+        self.channels[channel].is_flat
     }
 
     /// T⁻¹ (§1.3.3): the number along a channel's axis that a Gaussian number in 0..1 stands for.
@@ -130,8 +130,7 @@ impl Ranks {
         let bin = channel.before.partition_point(|before| f64::from(*before) <= rank).clamp(1, BINS) - 1;
         let bin = (0..=bin).rev().find(|bin| channel.count(*bin) > 0).unwrap_or(bin);
         let within = (rank - f64::from(channel.before[bin])) / f64::from(channel.count(bin).max(1));
-        let place = bin as f64 + within.clamp(0.0, 1.0);
-        f64::from(channel.low) + place / f64::from(channel.scale)
+        channel.scale.number(bin as f64 + within.clamp(0.0, 1.0) - 0.5)
     }
 
     /// The mean of the squares of a channel's Gaussian numbers, as they are stored.
@@ -145,7 +144,7 @@ impl Ranks {
 /// Puts the texels of all channels into bins.
 fn count(light: &Light<'_>, axes: &Axes, channels: &mut [Channel]) {
     let texels = light.texels();
-    let scales: Vec<(f32, f32)> = channels.iter().map(|channel| (channel.low, channel.scale)).collect();
+    let scales: Vec<Scale> = channels.iter().map(|channel| channel.scale).collect();
     let mut bins: Vec<_> = channels.iter_mut().map(|channel| channel.bins.chunks_mut(BAND)).collect();
     let bands: Vec<Vec<&mut [u16]>> = (0..texels.div_ceil(BAND))
         .map(|_| bins.iter_mut().filter_map(Iterator::next).collect())
@@ -160,11 +159,11 @@ fn count(light: &Light<'_>, axes: &Axes, channels: &mut [Channel]) {
         for first in (0..length).step_by(BATCH) {
             let count = BATCH.min(length - first);
             light.read(band * BAND + first, count, &mut numbers);
-            for (axis, (low, scale)) in scales.iter().enumerate() {
+            for (axis, scale) in scales.iter().enumerate() {
                 axes.along(axis, &numbers, &mut places);
                 let slots = &mut bins[axis][first..first + count];
                 for (slot, place) in slots.iter_mut().zip(&places) {
-                    *slot = bin(*place, *low, *scale);
+                    *slot = scale.bin(*place);
                 }
                 slots.iter().for_each(|slot| counts[axis][usize::from(*slot)] += 1);
             }
@@ -187,32 +186,66 @@ fn count(light: &Light<'_>, axes: &Axes, channels: &mut [Channel]) {
     }
 }
 
-/// The bin of a number: whole numbers are what floats near 2²³ are.
-#[inline(always)]
-fn bin(number: f32, low: f32, scale: f32) -> u16 {
-    let place = ((number - low) * scale).clamp(0.0, (BINS - 1) as f32);
-    (place + 8_388_608.0).to_bits() as u16
+impl Scale {
+    /// Of an axis on which numbers lie between two ends: all bins but a few lie within six deviations
+    /// of the mean.
+    fn new([low, high]: [f32; 2], mean: f32, deviation: f32) -> Scale {
+        let fine = [mean - 6.0 * deviation, mean + 6.0 * deviation].map(|end| end.clamp(low, high));
+        let width = fine[1] - fine[0];
+        let beyond = (high - low - width).max(0.0);
+        let all = (BINS - 1) as f32;
+        let coarse = if beyond > 0.0 { all / 16.0 / beyond } else { 0.0 };
+        let first = coarse * (fine[0] - low);
+        Scale { low, fine, bins: [(all - coarse * beyond) / width.max(1e-6), coarse], first }
+    }
+
+    /// The bin of a number: floats near 2²³ are whole numbers.
+    #[inline(always)]
+    fn bin(&self, number: f32) -> u16 {
+        let near = number.clamp(self.fine[0], self.fine[1]);
+        let place = (near - self.fine[0]) * self.bins[0] + (number - near) * self.bins[1] + self.first;
+        (place.clamp(0.0, (BINS - 1) as f32) + 8_388_608.0).to_bits() as u16
+    }
+
+    /// The number at a place among the bins; bin b reaches from b - ½ to b + ½.
+    fn number(&self, place: f64) -> f64 {
+        let [fine, coarse] = self.bins.map(f64::from);
+        let [low, high] = self.fine.map(f64::from);
+        let place = place - f64::from(self.first);
+        let end = (high - low) * fine;
+        let near = place.clamp(0.0, end);
+        let beyond = if coarse > 0.0 { (place - near) / coarse } else { 0.0 };
+        low + near / fine + beyond
+    }
+
+    /// The order of a texel: first by its number, then hashed.
+    fn key(&self, number: f32, texel: usize) -> u64 {
+        (u64::from((number - self.low).max(0.0).to_bits()) << 32) | u64::from(scatter(texel as u32))
+    }
+}
+
+impl Steps {
+    fn at(&self, key: u64) -> u8 {
+        self.first + self.keys.iter().filter(|step| **step <= key).count() as u8
+    }
 }
 
 impl Channel {
     fn new(light: &Light<'_>, axes: &Axes, axis: usize) -> Channel {
         let (low, high) = light.range();
-        let along = axes.directions[axis];
-        let ends = along[..axes.channels].iter().map(|x| (x * low).min(x * high)).sum::<f32>();
-        let low_end = if axes.channels == 1 { low } else { ends };
-        let high_end = if axes.channels == 1 {
-            high
-        } else {
-            along[..axes.channels].iter().map(|x| (x * low).max(x * high)).sum::<f32>()
-        };
+        let along = &axes.directions[axis][..axes.channels];
+        // A little beyond, for sums are rounded.
+        let least = along.iter().map(|x| (x * low).min(x * high)).sum::<f32>() - 1e-5;
+        let most = along.iter().map(|x| (x * low).max(x * high)).sum::<f32>() + 1e-5;
+        let deviation = axes.variances[axis].max(0.0).sqrt() as f32;
         Channel {
-            // A little beyond, for sums are rounded.
-            low: low_end - 1e-5,
-            scale: (BINS - 2) as f32 / (high_end - low_end + 2e-5),
+            scale: Scale::new([least, most], axes.mean_along(axis) as f32, deviation),
             bins: vec![0; light.texels()],
             before: Vec::new(),
-            codes: Vec::new(),
+            codes: vec![u16::from(MIDDLE); BINS],
+            steps: Vec::new(),
             stored: Vec::new(),
+            is_flat: false,
         }
     }
 
@@ -220,18 +253,16 @@ impl Channel {
         self.before[bin + 1] - self.before[bin]
     }
 
-    fn is_flat(&self) -> bool {
-        let filled = |bin: &usize| self.count(*bin) > 0;
-        let (first, last) = ((0..BINS).find(filled), (0..BINS).rfind(filled));
-        first.zip(last).is_none_or(|(first, last)| (last - first) as f32 <= FLAT * self.scale)
-    }
-
     /// Finds what each bin is stored as.
     fn order(&mut self, light: &Light<'_>, axes: &Axes, axis: usize) {
         let texels = light.texels();
-        if self.is_flat() {
-            self.codes = vec![Code::One(MIDDLE); BINS];
-            self.stored = (0..256_usize).map(|code| if code == usize::from(MIDDLE) { texels as u32 } else { 0 }).collect();
+        let filled = |bin: &usize| self.count(*bin) > 0;
+        let ends = [(0..BINS).find(filled), (0..BINS).rfind(filled)].map(Option::unwrap_or_default);
+        let [first, last] = ends.map(|bin| self.scale.number(bin as f64));
+        if last - first <= FLAT {
+            self.is_flat = true;
+            self.stored = vec![0; 256];
+            self.stored[usize::from(MIDDLE)] = texels as u32;
             return;
         }
         // The first rank of each stored number but 0, of texels 0..N.
@@ -242,64 +273,44 @@ impl Channel {
         let ranks: Vec<u32> = (1..256).map(first_rank).collect();
         let ends = ranks.iter().copied().chain(std::iter::once(texels as u32));
         self.stored = ends.scan(0, |last, end| Some(end - std::mem::replace(last, end))).collect();
-        // Where in a bin the number changes: at ranks after its first, before its end.
-        let changes = |bin: usize| {
-            let (first, end) = (self.before[bin], self.before[bin + 1]);
-            let (from, to) = (ranks.partition_point(|r| *r <= first), ranks.partition_point(|r| *r < end));
-            (from, from.max(to))
-        };
-        let changes: Vec<(usize, usize)> = (0..BINS).map(changes).collect();
-        let mut keys = self.keys(light, axes, axis, |bin| changes[bin].0 < changes[bin].1);
-        self.codes = changes
-            .iter()
-            .enumerate()
-            .map(|(bin, (from, to))| {
-                let Some(keys) = keys.get_mut(&(bin as u16)).filter(|_| from < to) else {
-                    return Code::One(*from as u8);
-                };
-                let steps = ranks[*from..*to].iter().map(|rank| {
-                    let place = (rank - self.before[bin]) as usize;
-                    *keys.select_nth_unstable(place).1
-                });
-                Code::Steps(*from as u8, steps.collect())
-            })
-            .collect();
+        // The ranks at which the number changes within a bin come after its first.
+        let mut changes: Vec<(u8, u32, &[u32])> = Vec::new();
+        let mut passed = 0;
+        for bin in 0..BINS {
+            let [first, end] = [self.before[bin], self.before[bin + 1]];
+            passed += ranks[passed..].iter().take_while(|rank| **rank <= first).count();
+            let within = ranks[passed..].iter().take_while(|rank| **rank < end).count();
+            self.codes[bin] = if within == 0 { passed as u16 } else { STEPPED + changes.len() as u16 };
+            if within > 0 {
+                changes.push((passed as u8, first, &ranks[passed..passed + within]));
+                passed += within;
+            }
+        }
+        let keys = self.keys(light, axes, axis, changes.len());
+        let steps = changes.iter().zip(keys).map(|((code, first, ranks), mut keys)| {
+            let keys = ranks.iter().map(|rank| *keys.select_nth_unstable((rank - first) as usize).1);
+            Steps { first: *code, keys: keys.collect() }
+        });
+        self.steps = steps.collect();
     }
 
-    /// The keys of all texels in some bins.
-    fn keys(
-        &self,
-        light: &Light<'_>,
-        axes: &Axes,
-        axis: usize,
-        is_wanted: impl Fn(usize) -> bool,
-    ) -> std::collections::BTreeMap<u16, Vec<u64>> {
-        let wanted: Vec<bool> = (0..BINS).map(is_wanted).collect();
+    /// The keys of the texels in each of so many bins that hold several stored numbers.
+    fn keys(&self, light: &Light<'_>, axes: &Axes, axis: usize, count: usize) -> Vec<Vec<u64>> {
         let bands = self.bins.par_chunks(BAND).enumerate().map(|(band, bins)| {
             let mut numbers = NONE;
-            let mut places = [0.0; BATCH];
             let mut found = Vec::new();
-            for (batch, bins) in bins.chunks(BATCH).enumerate() {
-                if !bins.iter().any(|bin| wanted[usize::from(*bin)]) {
-                    continue;
-                }
-                let first = band * BAND + batch * BATCH;
-                light.read(first, bins.len(), &mut numbers);
-                axes.along(axis, &numbers, &mut places);
-                for (i, bin) in bins.iter().enumerate().filter(|(_, bin)| wanted[usize::from(**bin)]) {
-                    found.push((*bin, key(places[i] - self.low, first + i)));
+            for (i, bin) in (band * BAND..).zip(bins) {
+                let code = self.codes[usize::from(*bin)];
+                if code >= STEPPED {
+                    light.read(i, 1, &mut numbers);
+                    found.push((code - STEPPED, self.scale.key(axes.place(axis, &numbers, 0), i)));
                 }
             }
             found
         });
         let bands: Vec<Vec<(u16, u64)>> = bands.collect();
-        let mut keys = std::collections::BTreeMap::<u16, Vec<u64>>::new();
-        for bin in (0..BINS).filter(|bin| wanted[*bin]) {
-            keys.insert(bin as u16, Vec::with_capacity(self.count(bin) as usize));
-        }
-        for (bin, key) in bands.into_iter().flatten() {
-            keys.entry(bin).or_default().push(key);
-        }
+        let mut keys = vec![Vec::new(); count];
+        bands.into_iter().flatten().for_each(|(bin, key)| keys[usize::from(bin)].push(key));
         keys
     }
 }
