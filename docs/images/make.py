@@ -42,6 +42,7 @@ def rows():
     files = {
         "distribution": ["uniform", "by_probability", "by_area", "dithered"],
         "leaves": ["basic", "by_probability", "by_density"],
+        "forest": ["repeated", "forest"],
         "bombing": ["flowers", "discs", "spheres", "halo"],
         "cells": ["cracked_mud", "giraffe", "scales", "stained"],
         "nature": ["marble_slab", "wood_board", "granite_slab", "rusty_plate", "sky", "starfield", "city"],

@@ -83,7 +83,8 @@ fn least<T>(rounds: usize, mut f: impl FnMut() -> T) -> (Duration, T) {
 /// A picture like a photograph: octaves of smooth noise, three ways mixed, and grain.
 fn clouds(side: u32) -> Vec<u8> {
     let random = |x: u32, y: u32, seed: u32| {
-        let mut h = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0xc2b2_ae35);
+        let mut h =
+            x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ seed.wrapping_mul(0xc2b2_ae35);
         h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
         h = (h ^ (h >> 12)).wrapping_mul(0x297a_2d39);
         f64::from(h ^ (h >> 15)) / f64::from(u32::MAX)
@@ -97,7 +98,9 @@ fn clouds(side: u32) -> Vec<u8> {
         mix(mix(at(0.0, 0.0), at(1.0, 0.0), u), mix(at(0.0, 1.0), at(1.0, 1.0), u), v)
     };
     let sum = |x: f64, y: f64, seed: u32| {
-        let octaves = (0..6).map(|k| smooth(x * f64::from(1 << k), y * f64::from(1 << k), seed + k) * 0.5_f64.powi(k as i32 + 1));
+        let octaves = (0..6).map(|k| {
+            smooth(x * f64::from(1 << k), y * f64::from(1 << k), seed + k) * 0.5_f64.powi(k as i32 + 1)
+        });
         octaves.sum::<f64>()
     };
     let mut pixels = Vec::with_capacity(side as usize * side as usize * 3);
@@ -218,38 +221,37 @@ fn inverse_cdf(u: f64) -> f64 {
     let x = 2.0 * u - 1.0;
     let w = -((1.0 - x) * (1.0 + x)).ln();
     let polynomial = |w: f64, c: [f64; 9]| c.iter().fold(0.0, |sum, c| sum * w + c);
-    let guess = x
-        * if w < 5.0 {
-            polynomial(
-                w - 2.5,
-                [
-                    2.810_226_36e-8,
-                    3.432_739_39e-7,
-                    -3.523_387_7e-6,
-                    -4.391_506_54e-6,
-                    0.000_218_580_87,
-                    -0.001_253_725_03,
-                    -0.004_177_681_640,
-                    0.246_640_727,
-                    1.501_409_41,
-                ],
-            )
-        } else {
-            polynomial(
-                w.sqrt() - 3.0,
-                [
-                    -0.000_200_214_257,
-                    0.000_100_950_558,
-                    0.001_349_343_22,
-                    -0.003_673_428_44,
-                    0.005_739_507_73,
-                    -0.007_622_461_3,
-                    0.009_438_870_47,
-                    1.001_674_06,
-                    2.832_976_82,
-                ],
-            )
-        };
+    let guess = x * if w < 5.0 {
+        polynomial(
+            w - 2.5,
+            [
+                2.810_226_36e-8,
+                3.432_739_39e-7,
+                -3.523_387_7e-6,
+                -4.391_506_54e-6,
+                0.000_218_580_87,
+                -0.001_253_725_03,
+                -0.004_177_681_640,
+                0.246_640_727,
+                1.501_409_41,
+            ],
+        )
+    } else {
+        polynomial(
+            w.sqrt() - 3.0,
+            [
+                -0.000_200_214_257,
+                0.000_100_950_558,
+                0.001_349_343_22,
+                -0.003_673_428_44,
+                0.005_739_507_73,
+                -0.007_622_461_3,
+                0.009_438_870_47,
+                1.001_674_06,
+                2.832_976_82,
+            ],
+        )
+    };
     let z = guess * std::f64::consts::SQRT_2;
     let density = (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
     z - (cdf(z) - u) / density

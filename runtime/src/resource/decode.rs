@@ -32,7 +32,11 @@ impl Decoded {
     /// A picture of three 8-bit samples a texel, row by row; none if there are more or fewer than that.
     pub fn rgb(size: [u32; 2], samples: Vec<u8>) -> Option<Decoded> {
         let texels = size[0] as usize * size[1] as usize;
-        (samples.len() == 3 * texels).then_some(Decoded { size, channels: 3, samples: Samples::Eight(samples) })
+        (samples.len() == 3 * texels).then_some(Decoded {
+            size,
+            channels: 3,
+            samples: Samples::Eight(samples),
+        })
     }
 
     /// Whether a sample has 16 bits rather than 8.
@@ -84,7 +88,10 @@ fn read_texels<T: Copy + Into<u16>>(
     each: &mut impl FnMut(usize, [u16; 4]),
 ) {
     match channels {
-        1 => samples.iter().enumerate().for_each(|(i, s)| each(i, [(*s).into(), (*s).into(), (*s).into(), white])),
+        1 => samples
+            .iter()
+            .enumerate()
+            .for_each(|(i, s)| each(i, [(*s).into(), (*s).into(), (*s).into(), white])),
         2 => samples.as_chunks().0.iter().enumerate().for_each(|(i, [s, a])| {
             each(i, [(*s).into(), (*s).into(), (*s).into(), (*a).into()]);
         }),

@@ -24,8 +24,8 @@ mod tables;
 
 pub use decode::Decoded;
 pub use encoding::{SrgbEncoder, srgb_to_linear};
-pub use table::Made;
 pub(crate) use table::MAX_LAYERS;
+pub use table::Made;
 
 use crate::project::Project;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};

@@ -49,7 +49,8 @@ impl Axes {
                 *variance = eigen.eigenvalues[i];
                 let vector = eigen.eigenvectors.column(i);
                 // Of the two senses the one whose longest component is positive.
-                let longest = vector.iter().fold(0.0_f64, |most, x| if x.abs() > most.abs() { *x } else { most });
+                let longest =
+                    vector.iter().fold(0.0_f64, |most, x| if x.abs() > most.abs() { *x } else { most });
                 let sense = if longest < 0.0 { -1.0 } else { 1.0 };
                 *direction = [0, 1, 2].map(|k| (vector[k] * sense) as f32);
             }
@@ -63,8 +64,9 @@ impl Axes {
         match self.channels {
             1 => *places = numbers[0],
             2 => (0..BATCH).for_each(|i| places[i] = numbers[0][i] * x + numbers[1][i] * y),
-            _ => (0..BATCH)
-                .for_each(|i| places[i] = numbers[0][i] * x + numbers[1][i] * y + numbers[2][i] * z),
+            _ => {
+                (0..BATCH).for_each(|i| places[i] = numbers[0][i] * x + numbers[1][i] * y + numbers[2][i] * z)
+            }
         }
     }
 
@@ -106,12 +108,13 @@ impl Moments {
                 let chunks = numbers[i].as_chunks::<8>().0.iter();
                 total(chunks.fold([0.0; 8], |sum, part| std::array::from_fn(|lane| sum[lane] + part[lane])))
             });
-            let second = PAIRS.map(|(i, j)| {
-                let chunks = numbers[i].as_chunks::<8>().0.iter().zip(numbers[j].as_chunks::<8>().0);
-                total(chunks.fold([0.0; 8], |sum, (a, b)| {
-                    std::array::from_fn(|lane| sum[lane] + a[lane] * b[lane])
-                }))
-            });
+            let second =
+                PAIRS.map(|(i, j)| {
+                    let chunks = numbers[i].as_chunks::<8>().0.iter().zip(numbers[j].as_chunks::<8>().0);
+                    total(chunks.fold([0.0; 8], |sum, (a, b)| {
+                        std::array::from_fn(|lane| sum[lane] + a[lane] * b[lane])
+                    }))
+                });
             sum = sum.plus(&Moments { first, second });
         }
         sum

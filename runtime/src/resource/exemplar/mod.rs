@@ -14,9 +14,9 @@ mod inverse;
 mod light;
 mod ranks;
 
-use super::table::{self, Made};
 use super::decode::{self, Decoded};
 use super::pyramid;
+use super::table::{self, Made};
 use crate::project::Project;
 use axes::Axes;
 use light::Light;
@@ -64,9 +64,14 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
         Borders::Inside => true,
     };
     let mut squares = Vec::new();
-    let gaussian = pyramid::extend("gaussian", light.size, |bytes| ranks.write(&light, &axes, bytes), |level| {
-        squares.push(inverse::mean_squares(level));
-    });
+    let gaussian = pyramid::extend(
+        "gaussian",
+        light.size,
+        |bytes| ranks.write(&light, &axes, bytes),
+        |level| {
+            squares.push(inverse::mean_squares(level));
+        },
+    );
     let inverse = inverse::make(&axes, &ranks, &squares, wanted.lut, inside);
     vec![gaussian, inverse]
 }
@@ -75,4 +80,123 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
 pub fn axes(picture: &Decoded, wanted: &Wanted) -> Vec<[f32; 3]> {
     let axes = Axes::of(&Light::new(picture, wanted.encoding, wanted.channels as usize));
     axes.directions[..axes.channels].to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gauss::share_below;
+    use super::{Wanted, axes, of_picture, scatter};
+    use crate::resource::decode::Decoded;
+    use crate::resource::srgb_to_linear;
+    use half::f16;
+    use texgraph_compiler::manifest::{Borders, Encoding};
+
+    const WANTED: Wanted = Wanted { encoding: Encoding::Srgb, channels: 3, borders: Borders::Auto, lut: 256 };
+
+    /// A picture without structure whose colours are correlated and lie on few values.
+    fn grains(size: [u32; 2]) -> Vec<u8> {
+        let texels = size[0] * size[1];
+        let grain = |i: u32| {
+            let [a, b] = [scatter(3 * i) >> 25, scatter(3 * i + 1) >> 26];
+            [a + 20, a / 2 + b, 90 + b / 4].map(|sample| sample as u8)
+        };
+        (0..texels).flat_map(grain).collect()
+    }
+
+    fn floats(bytes: &[u8]) -> Vec<f32> {
+        bytes.chunks_exact(2).map(|pair| f16::from_le_bytes([pair[0], pair[1]]).to_f32()).collect()
+    }
+
+    /// Listing 1.8, with the truncated distribution and equal values in hashed order.
+    fn sorted_codes(values: &[f32]) -> Vec<u8> {
+        let mut order: Vec<usize> = (0..values.len()).collect();
+        order.sort_by_key(|i| scatter(*i as u32));
+        order.sort_by(|i, j| values[*i].total_cmp(&values[*j]));
+        let mut codes = vec![0; values.len()];
+        for (rank, i) in order.into_iter().enumerate() {
+            let share = (rank as f64 + 0.5) / values.len() as f64;
+            let below = |code: &u32| share_below((f64::from(*code) - 0.5) / 255.0) <= share;
+            codes[i] = (1..=255).take_while(below).count() as u8;
+        }
+        codes
+    }
+
+    #[test]
+    fn ranks_are_those_of_sorting() {
+        for size in [[64, 64], [37, 53], [1, 300], [200, 1], [1, 1]] {
+            let pixels = grains(size);
+            let picture = Decoded::rgb(size, pixels.clone()).expect("a picture");
+            let made = of_picture(&picture, &WANTED);
+            for (channel, axis) in axes(&picture, &WANTED).iter().enumerate() {
+                let light = |i: usize| srgb_to_linear(f64::from(pixels[i]) / 255.0) as f32;
+                let place = |i: usize| {
+                    light(3 * i) * axis[0] + light(3 * i + 1) * axis[1] + light(3 * i + 2) * axis[2]
+                };
+                let values: Vec<f32> = (0..pixels.len() / 3).map(place).collect();
+                let ends = values.iter().fold((f32::MAX, f32::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+                let expected =
+                    if ends.1 - ends.0 < 1e-4 { vec![128; values.len()] } else { sorted_codes(&values) };
+                let found: Vec<u8> =
+                    made[0].bytes.chunks_exact(4).take(values.len()).map(|t| t[channel]).collect();
+                assert_eq!(found, expected, "{size:?}, channel {channel}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bytes() {
+        let picture = Decoded::rgb([512, 300], grains([512, 300])).expect("a picture");
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            pool.install(|| {
+                of_picture(&picture, &WANTED).into_iter().map(|made| made.bytes).collect::<Vec<_>>()
+            })
+        };
+        assert_eq!(on(1), on(3));
+    }
+
+    #[test]
+    fn the_last_row_is_the_mean() {
+        let size = [128, 128];
+        let pixels = grains(size);
+        let made = of_picture(&Decoded::rgb(size, pixels.clone()).expect("a picture"), &WANTED);
+        let inverse = floats(&made[1].bytes);
+        let width = WANTED.lut as usize;
+        for k in 0..3 {
+            let light = pixels[k..].iter().step_by(3).map(|code| srgb_to_linear(f64::from(*code) / 255.0));
+            let mean = light.sum::<f64>() / f64::from(size[0] * size[1]);
+            let part = |channel: usize| f64::from(inverse[4 * ((channel * 14 + 13) * width + width / 2) + k]);
+            let sum: f64 = (0..3).map(part).sum();
+            assert!((sum - mean).abs() < 0.5 / 255.0, "{sum} for {mean}");
+        }
+    }
+
+    #[test]
+    fn a_flat_picture_stays_as_it_is() {
+        let made = of_picture(&Decoded::rgb([8, 8], [10, 200, 60].repeat(64)).expect("a picture"), &WANTED);
+        assert!(made[0].bytes.chunks_exact(4).all(|texel| texel == [128, 128, 128, 255]));
+        let inverse = floats(&made[1].bytes);
+        let expected = [10.0, 200.0, 60.0].map(|code| srgb_to_linear(code / 255.0) as f32);
+        for x in [0, 100, 255] {
+            for (k, expected) in expected.iter().enumerate() {
+                let sum: f32 = (0..3).map(|channel| inverse[4 * (channel * 14 * 256 + x) + k]).sum();
+                assert!((sum - expected).abs() < 1e-3, "{sum} for {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_that_does_not_wrap_is_seen() {
+        let inside = |pixels: Vec<u8>| {
+            let made = of_picture(&Decoded::rgb([64, 64], pixels).expect("a picture"), &WANTED);
+            floats(&made[1].bytes)[3] == 1.0
+        };
+        let slope = (0..64 * 64_u32).flat_map(|i| [(i % 64 * 4) as u8; 3]).collect();
+        let wave = (0..64 * 64_u32).flat_map(|i| {
+            let angle = f64::from(i % 64) / 64.0 * std::f64::consts::TAU;
+            [(128.0 + 100.0 * angle.sin()) as u8; 3]
+        });
+        assert!(inside(slope));
+        assert!(!inside(wave.collect()));
+    }
 }

@@ -80,7 +80,8 @@ pub fn scatter(i: u32) -> u32 {
 impl Ranks {
     /// Counts, and finds the ranks where stored numbers change.
     pub fn of(light: &Light<'_>, axes: &Axes) -> Ranks {
-        let mut channels: Vec<Channel> = (0..axes.channels).map(|axis| Channel::new(light, axes, axis)).collect();
+        let mut channels: Vec<Channel> =
+            (0..axes.channels).map(|axis| Channel::new(light, axes, axis)).collect();
         count(light, axes, &mut channels);
         for (axis, channel) in channels.iter_mut().enumerate() {
             channel.order(light, axes, axis);
@@ -146,30 +147,30 @@ fn count(light: &Light<'_>, axes: &Axes, channels: &mut [Channel]) {
     let texels = light.texels();
     let scales: Vec<Scale> = channels.iter().map(|channel| channel.scale).collect();
     let mut bins: Vec<_> = channels.iter_mut().map(|channel| channel.bins.chunks_mut(BAND)).collect();
-    let bands: Vec<Vec<&mut [u16]>> = (0..texels.div_ceil(BAND))
-        .map(|_| bins.iter_mut().filter_map(Iterator::next).collect())
-        .collect();
+    let bands: Vec<Vec<&mut [u16]>> =
+        (0..texels.div_ceil(BAND)).map(|_| bins.iter_mut().filter_map(Iterator::next).collect()).collect();
     // As many counts as threads, whatever band each takes: sums of integers don't mind.
     let none = || vec![vec![0_u32; BINS]; scales.len()];
     let share = bands.len().div_ceil(rayon::current_num_threads());
-    let counts = bands.into_par_iter().enumerate().with_min_len(share).fold(none, |mut counts, (band, mut bins)| {
-        let mut numbers = NONE;
-        let mut places = [0.0; BATCH];
-        let length = bins.first().map_or(0, |bins| bins.len());
-        for first in (0..length).step_by(BATCH) {
-            let count = BATCH.min(length - first);
-            light.read(band * BAND + first, count, &mut numbers);
-            for (axis, scale) in scales.iter().enumerate() {
-                axes.along(axis, &numbers, &mut places);
-                let slots = &mut bins[axis][first..first + count];
-                for (slot, place) in slots.iter_mut().zip(&places) {
-                    *slot = scale.bin(*place);
+    let counts =
+        bands.into_par_iter().enumerate().with_min_len(share).fold(none, |mut counts, (band, mut bins)| {
+            let mut numbers = NONE;
+            let mut places = [0.0; BATCH];
+            let length = bins.first().map_or(0, |bins| bins.len());
+            for first in (0..length).step_by(BATCH) {
+                let count = BATCH.min(length - first);
+                light.read(band * BAND + first, count, &mut numbers);
+                for (axis, scale) in scales.iter().enumerate() {
+                    axes.along(axis, &numbers, &mut places);
+                    let slots = &mut bins[axis][first..first + count];
+                    for (slot, place) in slots.iter_mut().zip(&places) {
+                        *slot = scale.bin(*place);
+                    }
+                    slots.iter().for_each(|slot| counts[axis][usize::from(*slot)] += 1);
                 }
-                slots.iter().for_each(|slot| counts[axis][usize::from(*slot)] += 1);
             }
-        }
-        counts
-    });
+            counts
+        });
     let counts = counts.reduce(none, |mut sum, other| {
         for (sum, other) in sum.iter_mut().flatten().zip(other.iter().flatten()) {
             *sum += other;

@@ -1,0 +1,274 @@
+//! Whether tiled and blended photographs have the colours of the photographs: distributions, means and
+//! variances of 16 × 16 repeats, texel by texel and filtered, beside those of linear blending.
+//!
+//! Run with `cargo bench -p texgraph-runtime --no-default-features --bench stochastic`; `-- rock.jpg` for
+//! some of the photographs only.
+
+use half::f16;
+use std::collections::HashMap;
+use std::path::Path;
+use texgraph_compiler::manifest::Encoding;
+use texgraph_compiler::{Library, Options, Program, compile};
+use texgraph_runtime::cpu::Scene;
+use texgraph_runtime::project::Project;
+use texgraph_runtime::render::Request;
+use texgraph_runtime::resource::{SrgbEncoder, Tables, load};
+
+/// Repeats along each axis, and how many are drawn at once.
+const REPEATS: u32 = 16;
+const PIECE: u32 = 4;
+
+const PHOTOS: &[(&str, Encoding)] = &[
+    ("brick_grey.png", Encoding::Srgb),
+    ("cobbles.jpg", Encoding::Srgb),
+    ("cobbles_normal.png", Encoding::Normal),
+    ("forest_floor.jpg", Encoding::Srgb),
+    ("forest_floor_normal.jpg", Encoding::Normal),
+    ("grass_grey.png", Encoding::Srgb),
+    ("gravel_grey.png", Encoding::Srgb),
+    ("ice.jpg", Encoding::Srgb),
+    ("planks.jpg", Encoding::Srgb),
+    ("rock.jpg", Encoding::Srgb),
+    ("sand.png", Encoding::Srgb),
+];
+
+fn main() {
+    let asked: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let library = Library::standard().expect("the library is right");
+    println!(
+        "{REPEATS} × {REPEATS} repeats; distances are those of Kolmogorov and Smirnov, the worst channel"
+    );
+    for (file, encoding) in PHOTOS {
+        if asked.is_empty() || asked.iter().any(|name| name == file) {
+            // Where parts stay inside, the picture's middle is seen more often than its borders.
+            if measure(&library, file, *encoding, "auto") {
+                measure(&library, file, *encoding, "repeat");
+            }
+        }
+    }
+}
+
+/// What is drawn: colours in linear light, slopes of normals.
+struct Photo {
+    programs: Vec<(&'static str, Program, Tables)>,
+    side: u32,
+    is_normal: bool,
+}
+
+fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str) -> bool {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/photos");
+    let picture = image::open(folder.join(file)).expect("a photograph");
+    let side = picture.width();
+    let is_normal = encoding == Encoding::Normal;
+    let word = if is_normal { "normal" } else { "srgb" };
+    let texture = |name: &str, value: &str| {
+        format!("texture {name}(uv: vec2) -> (value: vec4) {{ value = {value} }}\n")
+    };
+    let text = [
+        format!(
+            "let e = exemplar(\"{file}\", encoding: {word}, wrap: {wrap})\nlet i = image(\"{file}\", encoding: {word})\n"
+        ),
+        format!("let sigma = permutation({side})\n"),
+        texture("repeated", "i.sample(uv)"),
+        texture("histogram", "e.stochastic(uv, offsets: sigma)"),
+        texture("linear", "e.stochastic(uv, offsets: sigma, blend: linear)"),
+        // Between texels: each part lies elsewhere among them, and so do the pixels of the picture.
+        texture(
+            "shifted",
+            &format!("i.sample(uv + hash(ifloor(uv * {side}.0)).xy / {side}.0, gradient: uv)"),
+        ),
+        texture("between", "e.stochastic(uv)"),
+        texture("linear_between", "e.stochastic(uv, blend: linear)"),
+    ];
+    let files: HashMap<String, String> = [("main.tex".to_owned(), text.concat())].into();
+    let names = ["repeated", "histogram", "linear", "shifted", "between", "linear_between"];
+    let programs = names.map(|name| {
+        let options = Options { texture: Some(name.into()), ..Options::default() };
+        let compiled = compile(library, "main.tex", &files, &options);
+        let mut program = compiled.unwrap_or_else(|error| panic!("{error:?}")).program;
+        let project = Project::new(&folder.join("main.tex"), false);
+        let tables = load(&mut program, &project).expect("the photograph is read");
+        (name, program, tables)
+    });
+    let photo = Photo { programs: programs.into(), side, is_normal };
+    let (_, program, tables) = &photo.programs[1];
+    let inverse = floats(table(program, tables, "inverse"));
+    let is_inside = inverse[3] > 0.5;
+    println!("\n{file}, {side}², wrap: {}", if is_inside { "inside" } else { "repeat" });
+    if !is_normal {
+        let close = returned(&picture.to_rgb8(), table(program, tables, "gaussian"), &inverse);
+        println!("  T⁻¹(T(I)) within one 8-bit step: {:.3} % of texels", 100.0 * close);
+    }
+    let axes = photo.axes();
+    let [plain, ours, linear] = [3, 4, 5].map(|which| photo.drawn(which, 0, &axes));
+    let [ours, theirs] = [&ours, &linear].map(|drawn| drawn.against(&plain));
+    println!(
+        "  between texels: distance {:.4} ({:.4}), variance {:+.1} % ({:+.1} %)",
+        ours.distance,
+        theirs.distance,
+        100.0 * ours.variance,
+        100.0 * theirs.variance
+    );
+    println!("  level  distance (linear)  along axes (linear)   variance (linear)   mean, 255ths (linear)");
+    // At the last level one texel is left, which tells no distribution.
+    for level in 0..=side.ilog2() {
+        let [plain, histogram, linear] = [0, 1, 2].map(|which| photo.drawn(which, level, &axes));
+        let [ours, theirs] = [&histogram, &linear].map(|drawn| drawn.against(&plain));
+        println!(
+            "  {level:5}  {:.4} ({:.4})    {:.4} ({:.4})     {:+5.1} % ({:+5.1} %)   {:.2} ({:.2})",
+            ours.distance,
+            theirs.distance,
+            ours.along,
+            theirs.along,
+            100.0 * ours.variance,
+            100.0 * theirs.variance,
+            255.0 * ours.mean,
+            255.0 * theirs.mean,
+        );
+    }
+    is_inside
+}
+
+/// The bytes of a field of the exemplar.
+fn table<'a>(program: &Program, tables: &'a Tables, field: &str) -> &'a [u8] {
+    let resources = &program.manifest.resources;
+    let e = resources.iter().position(|resource| resource.name == "e").expect("the exemplar is there");
+    tables.get(e, field).expect("the field is there")
+}
+
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(2).map(|pair| f16::from_le_bytes([pair[0], pair[1]]).to_f32()).collect()
+}
+
+/// The share of texels of which no channel is further off than one step, there and back.
+fn returned(picture: &image::RgbImage, gaussian: &[u8], inverse: &[f32]) -> f64 {
+    let encoder = SrgbEncoder::new();
+    let rows = 3 * 14;
+    let width = inverse.len() / 4 / rows;
+    let channel = |channel: usize, code: u8| {
+        let at = (f32::from(code) / 255.0 * width as f32 - 0.5).clamp(0.0, (width - 1) as f32);
+        let (i, share) = ((at as usize).min(width - 2), at - (at as usize).min(width - 2) as f32);
+        let entry = |i: usize| &inverse[4 * (channel * 14 * width + i)..][..3];
+        [0, 1, 2].map(|k| entry(i)[k] * (1.0 - share) + entry(i + 1)[k] * share)
+    };
+    let texels = picture.pixels().zip(gaussian.chunks_exact(4));
+    let close = texels.filter(|(texel, codes)| {
+        let parts = [0, 1, 2].map(|c| channel(c, codes[c]));
+        (0..3).all(|k| {
+            let light = parts[0][k] + parts[1][k] + parts[2][k];
+            encoder.encode(light).abs_diff(texel[k]) <= 1
+        })
+    });
+    close.count() as f64 / f64::from(picture.width() * picture.height())
+}
+
+/// How often numbers occur.
+struct Drawn {
+    /// Red, green, blue, and then along each axis.
+    counts: Vec<Vec<u64>>,
+    sums: [f64; 3],
+    squares: [f64; 3],
+    count: f64,
+}
+
+/// How two differ.
+struct Difference {
+    distance: f64,
+    along: f64,
+    variance: f64,
+    mean: f64,
+}
+
+const BINS: usize = 1 << 17;
+
+impl Photo {
+    /// Three unit vectors along which the photograph's numbers are not correlated, those of the
+    /// exemplar: what the texels of its table's first row differ by.
+    fn axes(&self) -> Vec<[f64; 3]> {
+        let (_, program, tables) = &self.programs[1];
+        let inverse = floats(table(program, tables, "inverse"));
+        let channels = if self.is_normal { 2 } else { 3 };
+        let width = inverse.len() / 4 / (14 * channels);
+        let axis = |channel: usize| {
+            let row = &inverse[4 * 14 * width * channel..][..4 * width];
+            let difference = [0, 1, 2].map(|k| f64::from(row[4 * (width - 1) + k] - row[k]));
+            let length = difference.iter().map(|x| x * x).sum::<f64>().sqrt();
+            (length > 1e-3).then(|| difference.map(|x| x / length))
+        };
+        (0..channels).filter_map(axis).collect()
+    }
+
+    fn drawn(&self, which: usize, level: u32, axes: &[[f64; 3]]) -> Drawn {
+        let (_, program, tables) = &self.programs[which];
+        let mut scene = Scene::new(program, tables, 0).expect("it can be drawn");
+        let pieces = if level < 2 { REPEATS / PIECE } else { 1 };
+        let repeats = REPEATS / pieces;
+        let size = (self.side * repeats) >> level;
+        let mut drawn = Drawn {
+            counts: vec![vec![0; BINS]; 3 + axes.len()],
+            sums: [0.0; 3],
+            squares: [0.0; 3],
+            count: 0.0,
+        };
+        // What repeats need not be drawn again.
+        let all = if which == 0 || which == 3 { 1 } else { pieces * pieces };
+        for piece in 0..all {
+            let [x, y] = [piece % pieces, piece / pieces].map(|i| f64::from(i * repeats));
+            let region = [x, y, x + f64::from(repeats), y + f64::from(repeats)];
+            let request = Request { region, ..Request::new([size; 2]) };
+            let picture = scene.render(&request, &|_| {}).expect("it is drawn");
+            picture.pixels.iter().for_each(|pixel| drawn.add(self.numbers(*pixel), axes));
+        }
+        drawn
+    }
+
+    fn numbers(&self, [x, y, z, _]: [f32; 4]) -> [f64; 3] {
+        let [x, y, z] = [x, y, z].map(f64::from);
+        if self.is_normal { [-x / z.max(0.05), -y / z.max(0.05), 0.0] } else { [x, y, z] }
+    }
+}
+
+impl Drawn {
+    fn add(&mut self, numbers: [f64; 3], axes: &[[f64; 3]]) {
+        // From -4 to 4, which slopes may have.
+        let bin = |x: f64| ((x + 4.0) / 8.0 * BINS as f64).clamp(0.0, BINS as f64 - 1.0) as usize;
+        for (k, x) in numbers.into_iter().enumerate() {
+            self.sums[k] += x;
+            self.squares[k] += x * x;
+            self.counts[k][bin(x)] += 1;
+        }
+        for (axis, counts) in axes.iter().zip(&mut self.counts[3..]) {
+            counts[bin(axis.iter().zip(numbers).map(|(a, x)| a * x).sum())] += 1;
+        }
+        self.count += 1.0;
+    }
+
+    fn mean(&self, k: usize) -> f64 {
+        self.sums[k] / self.count
+    }
+
+    fn variance(&self, k: usize) -> f64 {
+        self.squares[k] / self.count - self.mean(k).powi(2)
+    }
+
+    fn against(&self, plain: &Drawn) -> Difference {
+        let distance = |of: usize| {
+            let (mut one, mut other, mut most) = (0.0, 0.0, 0.0_f64);
+            for (a, b) in self.counts[of].iter().zip(&plain.counts[of]) {
+                one += *a as f64 / self.count;
+                other += *b as f64 / plain.count;
+                most = most.max(f64::abs(one - other));
+            }
+            most
+        };
+        let all = self.counts.len();
+        let more = (0..3).filter(|k| plain.variance(*k) > 1e-9);
+        let more = more.map(|k| self.variance(k) / plain.variance(k) - 1.0);
+        Difference {
+            distance: (0..3).map(distance).fold(0.0, f64::max),
+            along: (3..all).map(distance).fold(0.0, f64::max),
+            variance: more.fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most }),
+            mean: (0..3).map(|k| (self.mean(k) - plain.mean(k)).abs()).fold(0.0, f64::max),
+        }
+    }
+}
