@@ -520,6 +520,7 @@ pub static KINDS: &[Kind] = &[
             Field { name: "inverse", kind: FieldKind::View(PIXELS) },
             Field { name: "channels", kind: FieldKind::Constant },
             Field { name: "normals", kind: FieldKind::Constant },
+            Field { name: "taps", kind: FieldKind::Constant },
             Field { name: "inside", kind: FieldKind::Constant },
             Field { name: "width", kind: FieldKind::Constant },
             Field { name: "levels", kind: FieldKind::Constant },

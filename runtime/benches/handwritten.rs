@@ -1,9 +1,9 @@
 //! The compiler's shader for basic tiling beside the one an expert writes by hand, and that for daisies
-//! beside the listings of GPU Gems, chapter 20, on a software adapter: CPU time of the process a pixel, drawn in turns. The ratio of each round's two times is
+//! and a stochastic texture beside the published listings, on a software adapter: CPU time of the process a pixel, drawn in turns. The ratio of each round's two times is
 //! one number of the sample; its mean with a 95 % interval is what counts, and beside it the same of
 //! the compiler's shader against itself, which shows what this machine can tell apart.
 //!
-//! Run with `cargo bench -p texgraph-runtime --bench handwritten`.
+//! Run with `cargo bench -p texgraph-runtime --bench handwritten`; `-- daisies` for one file only.
 
 use cpu_time::ProcessTime;
 use std::path::Path;
@@ -38,6 +38,24 @@ const PAIRS: &[Pair] = &[
         tables: "listing",
         by_hand: "benches/bombing/listing.wgsl",
     },
+    Pair {
+        file: "benches/stochastic/stochastic.tex",
+        ours: "stochastic",
+        tables: "listing",
+        by_hand: "benches/stochastic/listing.wgsl",
+    },
+    Pair {
+        file: "benches/stochastic/stochastic.tex",
+        ours: "automatic",
+        tables: "listing",
+        by_hand: "benches/stochastic/listing.wgsl",
+    },
+    Pair {
+        file: "benches/stochastic/stochastic.tex",
+        ours: "stochastic",
+        tables: "repeated",
+        by_hand: "benches/stochastic/repeated.wgsl",
+    },
 ];
 
 fn main() {
@@ -47,12 +65,16 @@ fn main() {
         Err(error) => return println!("no software adapter: {error}"),
     };
     println!("{}, {SIDE}², {ROUNDS} rounds", gpu.name());
-    for Pair { file, ours, tables, by_hand } in PAIRS {
-        let ours = loaded(&root.join(file), ours);
+    let only = std::env::args().skip(1).find(|argument| argument != "--bench");
+    for Pair { file, ours: texture, tables, by_hand } in PAIRS {
+        if only.as_ref().is_some_and(|only| !file.contains(only)) {
+            continue;
+        }
+        let ours = loaded(&root.join(file), texture);
         let mut twin = loaded(&root.join(file), tables);
         let text = std::fs::read_to_string(root.join(by_hand)).expect("the shader is there");
         twin.0.passes.last_mut().expect("a program has a pass").wgsl = text;
-        compare(&gpu, file, [&ours, &twin]);
+        compare(&gpu, &format!("{file}:{texture} and {by_hand}"), [&ours, &twin]);
     }
 }
 

@@ -136,7 +136,7 @@ pub fn channels_of_exemplar(place: Place, asked: u32, encoding: Encoding) -> Dia
         Encoding::Normal => ("normals", "normals have 2, their slopes"),
         Encoding::Srgb | Encoding::Linear => ("a picture", "use 3, or 1 of a grey picture"),
     };
-    Diagnostic::new("E0556", place, format!("an exemplar of {of} can't have {asked} channels"), fit)
+    Diagnostic::new("E0556", place, format!("`channels: {asked}` does not fit an exemplar of {of}"), fit)
 }
 
 /// A probability of neither a list nor weights, or of both.

@@ -30,6 +30,7 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
     let constants = [
         ("channels", channels as i32),
         ("normals", normals),
+        ("taps", i32::from(sampler.anisotropy)),
         ("inside", inside),
         ("width", lut as i32),
         ("levels", Recipe::INVERSE_LEVELS as i32),
