@@ -42,7 +42,7 @@ def rows():
     files = {
         "distribution": ["uniform", "by_probability", "by_area", "dithered"],
         "leaves": ["basic", "by_probability", "by_density"],
-        "forest": ["repeated", "forest"],
+        "rock": ["repeated", "rock"],
         "bombing": ["flowers", "discs", "spheres", "halo"],
         "cells": ["cracked_mud", "giraffe", "scales", "stained"],
         "nature": ["marble_slab", "wood_board", "granite_slab", "rusty_plate", "sky", "starfield", "city"],

@@ -166,7 +166,7 @@ pub enum Recipe {
     },
     /// A picture to be tiled and blended (Deliot & Heitz 2019). Field `gaussian`: the picture with each
     /// of its decorrelated channels made Gaussian, of mean ½ and deviation 1/6 cut to 0..1, mipmapped;
-    /// alpha as it is. Field `inverse`: `lut` texels across, a row for each of
+    /// alpha as it is; of normals in 16-bit floats. Field `inverse`: `lut` texels across, a row for each of
     /// [`Recipe::INVERSE_LEVELS`] levels of channel 0, then of channel 1, and so on: what the channel
     /// adds to the colour (linear light, not premultiplied; of normals their slopes) where its Gaussian
     /// number is (x + ½)/`lut`, filtered as that level is; rows beyond the last level repeat it. Its

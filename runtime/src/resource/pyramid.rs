@@ -60,6 +60,19 @@ pub fn extend(
     Made { field, table, bytes }
 }
 
+/// The same in 16-bit floats, from the first level as it is and the others before they were rounded.
+pub fn deepen(made: &Made, levels: &[Vec<Vec4>]) -> Made {
+    let [width, height] = [made.table.levels[0].width, made.table.levels[0].height];
+    let table = Table::mipmapped(Format::Rgba16Float, [width, height], 1);
+    let writer = Writer::new(Format::Rgba16Float);
+    let mut bytes = vec![0; table.bytes() as usize];
+    let first = made.bytes.as_chunks::<4>().0[..width as usize * height as usize].iter();
+    let first = first.map(|texel| Vec4::from_array(texel.map(f32::from)) / 255.0);
+    let texels = first.chain(levels.iter().flatten().copied());
+    bytes.chunks_exact_mut(8).zip(texels).for_each(|(slot, texel)| writer.write(texel, slot));
+    Made { field: made.field, table, bytes }
+}
+
 /// Builds all levels of blocks, each of so many layers, its slices. Level l of a slice is the mean of
 /// the group of 2^l slices that it belongs to, counted from the block's first; of those there are.
 pub fn build_blocks(

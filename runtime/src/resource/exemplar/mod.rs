@@ -63,15 +63,23 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
         Borders::Repeat => false,
         Borders::Inside => true,
     };
-    let mut squares = Vec::new();
+    let (mut squares, mut floats) = (Vec::new(), Vec::new());
     let gaussian = pyramid::extend(
         "gaussian",
         light.size,
         |bytes| ranks.write(&light, &axes, bytes),
         |level| {
             squares.push(inverse::mean_squares(level));
+            // Of normals every step shows, where something glitters.
+            if wanted.encoding == Encoding::Normal {
+                floats.push(level.to_vec());
+            }
         },
     );
+    let gaussian = match wanted.encoding {
+        Encoding::Normal => pyramid::deepen(&gaussian, &floats),
+        Encoding::Srgb | Encoding::Linear => gaussian,
+    };
     let inverse = inverse::make(&axes, &ranks, &squares, wanted.lut, inside);
     vec![gaussian, inverse]
 }
