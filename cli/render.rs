@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use texgraph_compiler::{Compiled, Options, Plane};
 use texgraph_runtime::render::{self, Renderer, Request};
+use texgraph_runtime::resource;
 use texgraph_runtime::settings::Settings;
 
 /// Renders shorter than this show no progress: a bar that only flashes is a nuisance.
@@ -36,7 +37,7 @@ pub fn run(args: &Render) -> Result<(), Problem> {
     let options = Options { texture, plane, exact_levels: true, ..Options::default() };
     let mut compiled = compile(&program, options, args.output.as_deref())?;
     let request = request(args, &compiled)?;
-    let tables = program.load(&mut compiled)?;
+    let mut tables = program.load(&mut compiled)?;
     let renderer = Renderer::new(match args.backend {
         Backend::Auto => render::Backend::Auto,
         Backend::Gpu => render::Backend::Gpu,
@@ -44,6 +45,9 @@ pub fn run(args: &Render) -> Result<(), Problem> {
     })?;
     if args.verbose {
         let _ = writeln!(std::io::stderr(), "rendering on: {}", renderer.name());
+    }
+    if renderer.reads_blocks() {
+        resource::compress(&mut compiled.program.manifest, &mut tables);
     }
     let progress = Progress::new();
     let picture = renderer.render(&compiled.program, &tables, &request, &|share| progress.hear(share))?;

@@ -227,7 +227,7 @@ fn flatten((program, tables): &mut (Program, Tables)) {
         let table = Table::mipmapped(Format::Rgba16Float, [old.width, old.height], old.layers);
         let mut bytes = Vec::new();
         for (level, grey) in table.levels.iter().zip(EIGHTHS) {
-            bytes.extend(grey.to_le_bytes().repeat(level.bytes() as usize / 2));
+            bytes.extend(grey.to_le_bytes().repeat(level.bytes(table.format) as usize / 2));
         }
         texture.table = Some(table);
         tables.insert(index, &texture.field, bytes);

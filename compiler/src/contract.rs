@@ -348,6 +348,7 @@ fn resources(
                 anisotropy: u16::from(state.anisotropy),
             }),
             table: baked(&resource.recipe),
+            plain: None,
         });
     }
     all

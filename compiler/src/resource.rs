@@ -512,7 +512,8 @@ pub static KINDS: &[Kind] = &[
     Kind {
         name: "exemplar",
         constructor: "(path: text, encoding: srgb | linear | normal = srgb, channels: int = 3, \
-                      wrap: auto | repeat | inside = auto, lut: int = 256, anisotropy: int = 1) -> exemplar",
+                      wrap: auto | repeat | inside = auto, compress: none | bc1 | bc7 = none, lut: int = 256, \
+                      anisotropy: int = 1) -> exemplar",
         doc: "A photograph whose parts `stochastic` tiles and blends without end.",
         gives: None,
         fields: &[
@@ -523,6 +524,7 @@ pub static KINDS: &[Kind] = &[
             Field { name: "taps", kind: FieldKind::Constant },
             Field { name: "inside", kind: FieldKind::Constant },
             Field { name: "width", kind: FieldKind::Constant },
+            Field { name: "bc", kind: FieldKind::Constant },
             Field { name: "levels", kind: FieldKind::Constant },
         ],
         view: None,

@@ -5,7 +5,7 @@
 //! another size, `-- FILE.png` for pictures other than the made-up one.
 
 use std::time::{Duration, Instant};
-use texgraph_compiler::manifest::{Borders, Encoding};
+use texgraph_compiler::manifest::{Borders, Compression, Encoding};
 use texgraph_runtime::resource::exemplar::{self, Wanted};
 use texgraph_runtime::resource::{Decoded, srgb_to_linear};
 
@@ -13,8 +13,13 @@ use texgraph_runtime::resource::{Decoded, srgb_to_linear};
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const WIDTH: usize = 256;
-const WANTED: Wanted =
-    Wanted { encoding: Encoding::Srgb, channels: 3, borders: Borders::Repeat, lut: WIDTH as u32 };
+const WANTED: Wanted = Wanted {
+    encoding: Encoding::Srgb,
+    channels: 3,
+    borders: Borders::Repeat,
+    lut: WIDTH as u32,
+    compress: Compression::None,
+};
 const ROUNDS: usize = 5;
 
 fn main() {

@@ -167,12 +167,12 @@ impl Bake<'_> {
     }
 }
 
-/// The least and the greatest number that a format holds; none for formats of integers.
+/// The least and the greatest number that a format holds; none for formats that aren't drawn to.
 fn limits(format: Format) -> Option<(f32, f32)> {
     match format {
         Format::Rgba8UnormSrgb | Format::Rgba8Unorm => Some((0.0, 1.0)),
         Format::Rgba8Snorm => Some((-1.0, 1.0)),
         Format::Rgba16Float => Some((half::f16::MIN.to_f32(), half::f16::MAX.to_f32())),
-        Format::R32Sint | Format::Rgba32Sint => None,
+        Format::R32Sint | Format::Rgba32Sint | Format::Bc1RgbaUnorm | Format::Bc7RgbaUnorm => None,
     }
 }

@@ -171,6 +171,15 @@ impl Renderer {
         "CPU renderer".to_string()
     }
 
+    /// Whether block-compressed textures are read: whether [`crate::resource::compress`] is of use.
+    pub fn reads_blocks(&self) -> bool {
+        #[cfg(feature = "gpu")]
+        if let Some(gpu) = &self.gpu {
+            return gpu.reads_blocks();
+        }
+        false
+    }
+
     /// Makes a program's output ready to be rendered any number of times.
     ///
     /// # Errors

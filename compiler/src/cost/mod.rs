@@ -162,7 +162,7 @@ fn tables(manifest: &Manifest) -> Vec<TableCost> {
     });
     let costs = textures.map(|(name, texture)| TableCost {
         name,
-        bytes: texture.table.as_ref().map(|table| table.levels.iter().map(manifest::Level::bytes).sum()),
+        bytes: texture.table.as_ref().map(manifest::Table::bytes),
         layout: texture.table.as_ref().map_or(String::new(), layout),
     });
     costs.collect()

@@ -89,6 +89,7 @@ pub const PAGES: &[(&str, &str)] = &[
     ("E0506", include_str!("pages/E0506.md")),
     ("E0507", include_str!("pages/E0507.md")),
     ("E0508", include_str!("pages/E0508.md")),
+    ("E0509", include_str!("pages/E0509.md")),
     ("E0511", include_str!("pages/E0511.md")),
     ("E0512", include_str!("pages/E0512.md")),
     ("E0513", include_str!("pages/E0513.md")),

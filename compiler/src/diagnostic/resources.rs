@@ -112,6 +112,24 @@ pub fn uneven_blocks(place: Place, path: &str, size: [u32; 2], block: u32) -> Di
     .help(format!("extend the picture to {}×{}, or change `block`", fit(width), fit(height)))
 }
 
+/// A picture that no whole number of blocks covers.
+pub fn uneven_compression(place: Place, path: &str, [width, height]: [u32; 2]) -> Diagnostic {
+    let fit = |texels: u32| texels.max(4) / 4 * 4;
+    Diagnostic::new(
+        "E0507",
+        place,
+        format!("`{path}` has {width}×{height} texels, and can't be compressed"),
+        "blocks of compressed textures have 4×4 texels",
+    )
+    .help(format!("crop the picture to {}×{}, or leave `compress` out", fit(width), fit(height)))
+}
+
+/// Transparency where the format has none.
+pub fn transparency_of_bc1(place: Place, path: &str) -> Diagnostic {
+    Diagnostic::new("E0509", place, format!("`{path}` is transparent in places"), "bc1 holds no transparency")
+        .help("write `compress: bc7`")
+}
+
 /// Files of one resource that differ in size.
 pub fn sizes_differ(place: Place, first: (&str, [u32; 2]), other: (&str, [u32; 2])) -> Diagnostic {
     let (path, [width, height]) = first;

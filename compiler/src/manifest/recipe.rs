@@ -182,6 +182,8 @@ pub enum Recipe {
         borders: Borders,
         /// Texels across `inverse`, 128 to 1024.
         lut: u32,
+        /// How `gaussian` is compressed where adapters can read that.
+        compress: Compression,
     },
     /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
     /// compiling.
@@ -206,6 +208,29 @@ impl Recipe {
         match self {
             Recipe::Permutation { size, .. } => size.div_ceil(Recipe::ROW),
             _ => 1,
+        }
+    }
+}
+
+/// How a texture is compressed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Compression {
+    /// Not at all.
+    None,
+    /// To half a byte a texel, without alpha.
+    Bc1,
+    /// To a byte a texel.
+    Bc7,
+}
+
+impl Compression {
+    /// The format; none of what is not compressed.
+    pub fn format(self) -> Option<Format> {
+        match self {
+            Compression::None => None,
+            Compression::Bc1 => Some(Format::Bc1RgbaUnorm),
+            Compression::Bc7 => Some(Format::Bc7RgbaUnorm),
         }
     }
 }

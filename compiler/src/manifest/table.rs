@@ -34,9 +34,9 @@ impl Table {
         let mut offset = 0;
         let levels = (0..count).map(|level| {
             let [width, height] = size.map(|side| (side >> level).max(1));
-            let bytes_per_row = width * format.bytes();
+            let bytes_per_row = width.div_ceil(format.block()) * format.bytes();
             let level = Level { offset, width, height, layers, bytes_per_row };
-            offset += level.bytes();
+            offset += level.bytes(format);
             level
         });
         let levels = levels.collect();
@@ -45,7 +45,7 @@ impl Table {
 
     /// Bytes of all levels.
     pub fn bytes(&self) -> u64 {
-        self.levels.iter().map(Level::bytes).sum()
+        self.levels.iter().map(|level| level.bytes(self.format)).sum()
     }
 }
 
@@ -60,14 +60,19 @@ pub struct Level {
     pub height: u32,
     /// Layers or slices.
     pub layers: u32,
-    /// Bytes from one row to the next.
+    /// Bytes from one row to the next: a row of texels, or of blocks.
     pub bytes_per_row: u32,
 }
 
 impl Level {
+    /// Rows of a layer: of texels, or of blocks.
+    pub fn rows(&self, format: Format) -> u32 {
+        self.height.div_ceil(format.block())
+    }
+
     /// Bytes of the level, all layers.
-    pub fn bytes(&self) -> u64 {
-        u64::from(self.bytes_per_row) * u64::from(self.height) * u64::from(self.layers)
+    pub fn bytes(&self, format: Format) -> u64 {
+        u64::from(self.bytes_per_row) * u64::from(self.rows(format)) * u64::from(self.layers)
     }
 }
 
@@ -87,6 +92,10 @@ pub enum Format {
     R32Sint,
     /// Four 32-bit integers.
     Rgba32Sint,
+    /// Colours of 0..1 in 8 bytes for 4 by 4 texels, alpha 1.
+    Bc1RgbaUnorm,
+    /// 0..1 in 16 bytes for 4 by 4 texels.
+    Bc7RgbaUnorm,
 }
 
 impl Format {
@@ -97,15 +106,27 @@ impl Format {
         (Format::Rgba16Float, "rgba16float"),
         (Format::R32Sint, "r32sint"),
         (Format::Rgba32Sint, "rgba32sint"),
+        (Format::Bc1RgbaUnorm, "bc1-rgba-unorm"),
+        (Format::Bc7RgbaUnorm, "bc7-rgba-unorm"),
     ];
 
-    /// Bytes a texel.
+    /// Bytes a texel, or a block of texels.
     pub fn bytes(self) -> u32 {
         match self {
             Format::Rgba8UnormSrgb | Format::Rgba8Unorm | Format::Rgba8Snorm | Format::R32Sint => 4,
-            Format::Rgba16Float => 8,
-            Format::Rgba32Sint => 16,
+            Format::Rgba16Float | Format::Bc1RgbaUnorm => 8,
+            Format::Rgba32Sint | Format::Bc7RgbaUnorm => 16,
         }
+    }
+
+    /// Texels across and down a block; 1 where every texel stands for itself.
+    pub fn block(self) -> u32 {
+        if self.is_compressed() { 4 } else { 1 }
+    }
+
+    /// Whether adapters need the feature `texture-compression-bc`.
+    pub fn is_compressed(self) -> bool {
+        matches!(self, Format::Bc1RgbaUnorm | Format::Bc7RgbaUnorm)
     }
 }
 

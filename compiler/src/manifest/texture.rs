@@ -24,6 +24,9 @@ pub struct Texture {
     pub sampler: Option<Sampler>,
     /// Size, format and place of its bytes; none until the resource is loaded.
     pub table: Option<Table>,
+    /// Where `table` is compressed, the same without: for adapters that lack `texture-compression-bc`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plain: Option<Table>,
 }
 
 /// The shape of a view, by its WebGPU name.

@@ -153,9 +153,8 @@ pub fn decode_all(pass: &Pass<'_>, bakes: &[Bake<'_>], tables: &Tables) -> Resul
         if bakes.iter().any(|bake| fills(bake, view)) {
             return Ok(Texture::single());
         }
-        let bytes = tables.get(view.resource as usize, view.field);
-        let whole = bytes.zip(texture.table.as_ref());
-        whole.and_then(|(bytes, table)| decode(texture, table, bytes)).ok_or_else(|| RenderError::NoTable {
+        let whole = tables.readable(view.resource as usize, texture, false);
+        whole.and_then(|(table, bytes)| decode(texture, table, bytes)).ok_or_else(|| RenderError::NoTable {
             resource: resource.map_or(String::new(), |r| r.name.clone()),
             field: view.field.to_string(),
         })
@@ -194,7 +193,7 @@ fn decode(texture: &manifest::Texture, table: &Table, bytes: &[u8]) -> Option<Te
         let fits = level.start as i64 + count <= (bytes.len() / texel_bytes) as i64;
         side.contains(&level.size.x) && side.contains(&level.size.y) && side.contains(&level.layers) && fits
     };
-    if levels.is_empty() || !levels.iter().all(whole) {
+    if table.format.is_compressed() || levels.is_empty() || !levels.iter().all(whole) {
         return None;
     }
     let (wrap, filter) = match &texture.sampler {
@@ -225,6 +224,7 @@ fn texels(format: Format, bytes: &[u8]) -> Texels {
         }
         Format::R32Sint => ints(bytes, 4),
         Format::Rgba32Sint => ints(bytes, 16),
+        Format::Bc1RgbaUnorm | Format::Bc7RgbaUnorm => Texels::Float(Vec::new()),
     }
 }
 

@@ -52,14 +52,19 @@ fn rank(info: &AdapterInfo) -> u8 {
     }
 }
 
-/// A device with exactly WebGPU's default limits, so that what runs here runs everywhere. Some
-/// OpenGL drivers claim these but can't draw floats.
+/// A device with exactly WebGPU's default limits, so that what runs here runs everywhere; compressed
+/// textures, where it reads them, have plain forms for the others. Some OpenGL drivers claim these limits
+/// but can't draw floats.
 fn device(adapter: &Adapter) -> Result<(Device, Queue), String> {
     let usages = adapter.get_texture_format_features(TARGET).allowed_usages;
     if !usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT) {
         return Err("it does not render to 32-bit floats".to_string());
     }
-    let descriptor = wgpu::DeviceDescriptor { label: Some("texgraph"), ..wgpu::DeviceDescriptor::default() };
+    let descriptor = wgpu::DeviceDescriptor {
+        label: Some("texgraph"),
+        required_features: adapter.features() & wgpu::Features::TEXTURE_COMPRESSION_BC,
+        ..wgpu::DeviceDescriptor::default()
+    };
     pollster::block_on(adapter.request_device(&descriptor)).map_err(|error| error.to_string())
 }
 

@@ -29,7 +29,8 @@ pub enum Preference {
     Software,
 }
 
-/// A device to render on. Within WebGPU's default limits, without optional features.
+/// A device to render on. Within WebGPU's default limits; of the optional features only block-compressed
+/// textures are used.
 pub struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -62,6 +63,11 @@ impl Gpu {
     /// Whether the adapter is a program on the CPU, not a graphics card.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether it reads block-compressed textures.
+    pub fn reads_blocks(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TEXTURE_COMPRESSION_BC)
     }
 
     /// Uploads a program's textures and builds the pipeline of one of its outputs.

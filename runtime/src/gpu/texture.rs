@@ -33,12 +33,15 @@ impl Textures {
             for texture in &resource.textures {
                 let missing =
                     || RenderError::NoTable { resource: resource.name.clone(), field: texture.field.clone() };
-                let table = texture.table.as_ref().ok_or_else(missing)?;
-                let uploaded = create(gpu, texture, table);
-                if !bakes.iter().any(|bake| bake.resource == index) {
-                    let bytes = tables.get(index, &texture.field).ok_or_else(missing)?;
+                let uploaded = if bakes.iter().any(|bake| bake.resource == index) {
+                    create(gpu, texture, texture.table.as_ref().ok_or_else(missing)?)
+                } else {
+                    let readable = tables.readable(index, texture, gpu.reads_blocks());
+                    let (table, bytes) = readable.ok_or_else(missing)?;
+                    let uploaded = create(gpu, texture, table);
                     write(gpu, &uploaded, table, bytes).ok_or_else(missing)?;
-                }
+                    uploaded
+                };
                 textures.insert((index, texture.field.clone()), uploaded);
             }
         }
@@ -108,18 +111,18 @@ fn create(gpu: &Gpu, texture: &Texture, table: &Table) -> Uploaded {
 /// Writes all levels; none where there are too few bytes.
 fn write(gpu: &Gpu, uploaded: &Uploaded, table: &Table, bytes: &[u8]) -> Option<()> {
     for (number, level) in (0..).zip(&table.levels) {
-        write_level(gpu, &uploaded.target, number, level, level_bytes(level, bytes)?);
+        let format = table.format;
+        write_level(gpu, &uploaded.target, number, format, level, level_bytes(level, format, bytes)?);
     }
     Some(())
 }
 
-fn level_bytes<'a>(level: &Level, bytes: &'a [u8]) -> Option<&'a [u8]> {
-    let length = u64::from(level.bytes_per_row) * u64::from(level.height) * u64::from(level.layers);
+fn level_bytes<'a>(level: &Level, format: Format, bytes: &'a [u8]) -> Option<&'a [u8]> {
     let start = usize::try_from(level.offset).ok()?;
-    bytes.get(start..start.checked_add(usize::try_from(length).ok()?)?)
+    bytes.get(start..start.checked_add(usize::try_from(level.bytes(format)).ok()?)?)
 }
 
-fn write_level(gpu: &Gpu, target: &wgpu::Texture, number: u32, level: &Level, texels: &[u8]) {
+fn write_level(gpu: &Gpu, target: &wgpu::Texture, number: u32, format: Format, level: &Level, texels: &[u8]) {
     let place = wgpu::TexelCopyTextureInfo {
         texture: target,
         mip_level: number,
@@ -129,9 +132,11 @@ fn write_level(gpu: &Gpu, target: &wgpu::Texture, number: u32, level: &Level, te
     let layout = wgpu::TexelCopyBufferLayout {
         offset: 0,
         bytes_per_row: Some(level.bytes_per_row),
-        rows_per_image: Some(level.height),
+        rows_per_image: Some(level.rows(format)),
     };
-    gpu.queue.write_texture(place, texels, layout, extent(level.width, level.height, level.layers));
+    // Whole blocks, beyond the texels of small levels too.
+    let [width, height] = [level.width, level.height].map(|side| side.next_multiple_of(format.block()));
+    gpu.queue.write_texture(place, texels, layout, extent(width, height, level.layers));
 }
 
 fn extent(width: u32, height: u32, layers: u32) -> wgpu::Extent3d {
@@ -155,6 +160,8 @@ fn format(format: Format) -> wgpu::TextureFormat {
         Format::Rgba16Float => wgpu::TextureFormat::Rgba16Float,
         Format::R32Sint => wgpu::TextureFormat::R32Sint,
         Format::Rgba32Sint => wgpu::TextureFormat::Rgba32Sint,
+        Format::Bc1RgbaUnorm => wgpu::TextureFormat::Bc1RgbaUnorm,
+        Format::Bc7RgbaUnorm => wgpu::TextureFormat::Bc7RgbaUnorm,
     }
 }
 

@@ -54,6 +54,17 @@ impl Decoded {
         matches!(self.channels, 2 | 4)
     }
 
+    /// Whether no texel lets anything through.
+    pub fn is_opaque(&self) -> bool {
+        let mut is_opaque = true;
+        if self.has_alpha() {
+            let white = self.white();
+            let texels = self.size[0] as usize * self.size[1] as usize;
+            self.read(0, texels, |_, texel| is_opaque &= texel[3] == white);
+        }
+        is_opaque
+    }
+
     /// Gives so many texels to a function with their number from 0 on, row by row from the `first` on:
     /// as [`Decoded::texel`] gives them, faster.
     pub fn read(&self, first: usize, count: usize, mut each: impl FnMut(usize, [u16; 4])) {

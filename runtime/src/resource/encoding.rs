@@ -78,7 +78,7 @@ impl Writer {
         self.format
     }
 
-    /// Writes one texel to as many bytes as the format has. Integer formats stay zero.
+    /// Writes one texel to as many bytes as the format has. Integer and compressed formats stay zero.
     pub fn write(&self, texel: Vec4, bytes: &mut [u8]) {
         let unorm = |x: f32| (x.clamp(0.0, 1.0) * 255.0).round() as u8;
         let snorm = |x: f32| (x.clamp(-1.0, 1.0) * 127.0).round() as i8 as u8;
@@ -99,7 +99,7 @@ impl Writer {
                     slot.copy_from_slice(&f16::from_f32(x).to_le_bytes());
                 }
             }
-            Format::R32Sint | Format::Rgba32Sint => {}
+            Format::R32Sint | Format::Rgba32Sint | Format::Bc1RgbaUnorm | Format::Bc7RgbaUnorm => {}
         }
     }
 }

@@ -4,6 +4,7 @@
 //! runs on the CPU, in parallel, and gives the same bytes for any number of threads and on any
 //! machine. Errors are found all at once and stand at the constructor calls.
 
+mod compress;
 pub(crate) mod decode;
 mod encoding;
 pub mod exemplar;
@@ -22,6 +23,7 @@ mod shape;
 pub(crate) mod table;
 mod tables;
 
+pub use compress::compress;
 pub use decode::Decoded;
 pub use encoding::{SrgbEncoder, srgb_to_linear};
 pub(crate) use table::MAX_LAYERS;
@@ -33,7 +35,7 @@ use shape::Shape;
 use std::sync::Arc;
 use texgraph_compiler::Program;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
-use texgraph_compiler::manifest::{Manifest, Recipe, Resource};
+use texgraph_compiler::manifest::{Manifest, Recipe, Resource, Table, Texture};
 
 /// The bytes of every texture of a program. Cloning shares them.
 #[derive(Clone, Debug, Default)]
@@ -46,6 +48,8 @@ struct Entry {
     resource: usize,
     field: String,
     bytes: Arc<[u8]>,
+    /// Where those are compressed, the same without.
+    plain: Option<Arc<[u8]>>,
 }
 
 impl Tables {
@@ -56,10 +60,34 @@ impl Tables {
         found.map(|entry| &entry.bytes)
     }
 
+    /// The bytes of a field without compression, where [`Tables::get`] gives compressed ones: laid out
+    /// as the texture's `plain` says.
+    pub fn plain(&self, resource: usize, field: &str) -> Option<&Arc<[u8]>> {
+        let found = self.entries.iter().find(|entry| entry.resource == resource && entry.field == field);
+        found.and_then(|entry| entry.plain.as_ref())
+    }
+
     /// Adds or replaces the bytes of a field: how a package made ahead of time comes in.
     pub fn insert(&mut self, resource: usize, field: &str, bytes: impl Into<Arc<[u8]>>) {
         self.entries.retain(|entry| entry.resource != resource || entry.field != field);
-        self.entries.push(Entry { resource, field: field.to_string(), bytes: bytes.into() });
+        self.entries.push(Entry { resource, field: field.to_string(), bytes: bytes.into(), plain: None });
+    }
+
+    /// Those of a field that a renderer can read, with their layout.
+    pub(crate) fn readable<'a>(
+        &'a self,
+        resource: usize,
+        texture: &'a Texture,
+        reads_blocks: bool,
+    ) -> Option<(&'a Table, &'a Arc<[u8]>)> {
+        match &texture.plain {
+            Some(plain) if !reads_blocks => Some((plain, self.plain(resource, &texture.field)?)),
+            _ => Some((texture.table.as_ref()?, self.get(resource, &texture.field)?)),
+        }
+    }
+
+    fn entry(&mut self, resource: usize, field: &str) -> Option<&mut Entry> {
+        self.entries.iter_mut().find(|entry| entry.resource == resource && entry.field == field)
     }
 
     /// All fields: resource, name, bytes; in the order of the manifest.
@@ -130,9 +158,10 @@ fn make(
         Recipe::PixelMap { path, block, levels } => pixel_map::make(project, place, path, *block, *levels),
         Recipe::Ramp { stops, space } => Ok(vec![ramp::make(stops, *space)]),
         Recipe::Tables { rows } => tables::make(place, rows, known),
-        Recipe::Exemplar { path, encoding, channels, borders, lut } => {
-            let (encoding, channels, borders, lut) = (*encoding, *channels, *borders, *lut);
-            exemplar::make(project, place, path, &exemplar::Wanted { encoding, channels, borders, lut })
+        Recipe::Exemplar { path, encoding, channels, borders, lut, compress } => {
+            let (encoding, channels, borders) = (*encoding, *channels, *borders);
+            let wanted = exemplar::Wanted { encoding, channels, borders, lut: *lut, compress: *compress };
+            exemplar::make(project, place, path, &wanted)
         }
         // Made by rendering its pass.
         Recipe::Bake { .. } => Ok(Vec::new()),

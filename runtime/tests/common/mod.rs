@@ -111,6 +111,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
             sample,
             sampler: (sample == SampleKind::Float).then_some(sampler),
             table: None,
+            plain: None,
         }],
     }
 }

@@ -50,7 +50,7 @@ pub fn make(axes: &Axes, ranks: &Ranks, squares: &[DVec3], width: u32, is_inside
         // The last level has lost all there was: the whole distribution is under its texel.
         let all = lost(squares.len());
         let variance = if all > 0.0 { lost(level) / all * DEVIATION * DEVIATION } else { 0.0 };
-        curves[channel].filtered(variance)
+        stretched(curves[channel].filtered(variance), |stored| ranks.gaussian(channel, stored))
     });
     let rows: Vec<Vec<f64>> = rows.collect();
     let writer = Writer::new(Format::Rgba16Float);
@@ -66,6 +66,18 @@ pub fn make(axes: &Axes, ranks: &Ranks, squares: &[DVec3], width: u32, is_inside
         writer.write(part.as_vec3().extend(f32::from(u8::from(is_inside))), slot);
     }
     Made { field: "inverse", table, bytes }
+}
+
+/// The entries at stored numbers, which Gaussian ones are more or less close to each other in.
+fn stretched(entries: Vec<f64>, gaussian: impl Fn(f64) -> f64) -> Vec<f64> {
+    let width = entries.len() as f64;
+    let entry = |i: usize| {
+        let place = (gaussian((i as f64 + 0.5) / width) * width - 0.5).clamp(0.0, width - 1.0);
+        let first = (place as usize).min(entries.len() - 1);
+        let next = (first + 1).min(entries.len() - 1);
+        entries[first] + (entries[next] - entries[first]) * (place - first as f64)
+    };
+    (0..entries.len()).map(entry).collect()
 }
 
 /// T⁻¹ of a channel.

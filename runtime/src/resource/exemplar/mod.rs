@@ -22,8 +22,8 @@ use axes::Axes;
 use light::Light;
 use ranks::Ranks;
 pub use ranks::scatter;
-use texgraph_compiler::diagnostic::{Diagnostic, Place};
-use texgraph_compiler::manifest::{Borders, Encoding, Format};
+use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
+use texgraph_compiler::manifest::{Borders, Compression, Encoding, Format};
 
 /// What is asked for.
 pub struct Wanted {
@@ -35,12 +35,15 @@ pub struct Wanted {
     pub borders: Borders,
     /// Texels across `inverse`.
     pub lut: u32,
+    /// Compressed textures have Gaussian numbers that spread as far as the channel does (§1.6), so that
+    /// the errors of compression weigh alike. [`of_picture`] gives them as they are.
+    pub compress: Compression,
 }
 
 /// Makes the textures.
 ///
 /// # Errors
-/// The picture can't be read, or is larger than a texture may be.
+/// The picture can't be read, is larger than a texture may be, or can't be compressed as wanted.
 pub fn make(
     project: &Project,
     place: Place,
@@ -49,7 +52,13 @@ pub fn make(
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     let file = decode::open(project, path, place)?;
     table::check(place, path, Format::Rgba8Unorm, file.size, 1)?;
+    if wanted.compress != Compression::None && file.size.iter().any(|side| side % 4 != 0) {
+        return Err(vec![resources::uneven_compression(place, path, file.size)]);
+    }
     let picture = file.decode()?;
+    if wanted.compress == Compression::Bc1 && !picture.is_opaque() {
+        return Err(vec![resources::transparency_of_bc1(place, path)]);
+    }
     Ok(of_picture(&picture, wanted))
 }
 
@@ -57,12 +66,13 @@ pub fn make(
 pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
     let light = Light::new(picture, wanted.encoding, wanted.channels as usize);
     let axes = Axes::of(&light);
-    let ranks = Ranks::of(&light, &axes);
+    let ranks = Ranks::of(&light, &axes, wanted.compress != Compression::None);
     let inside = match wanted.borders {
         Borders::Auto => borders::differ(&light),
         Borders::Repeat => false,
         Borders::Inside => true,
     };
+    let is_fine = wanted.encoding == Encoding::Normal && wanted.compress == Compression::None;
     let (mut squares, mut floats) = (Vec::new(), Vec::new());
     let gaussian = pyramid::extend(
         "gaussian",
@@ -71,15 +81,12 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
         |level| {
             squares.push(inverse::mean_squares(level));
             // Of normals every step shows, where something glitters.
-            if wanted.encoding == Encoding::Normal {
+            if is_fine {
                 floats.push(level.to_vec());
             }
         },
     );
-    let gaussian = match wanted.encoding {
-        Encoding::Normal => pyramid::deepen(&gaussian, &floats),
-        Encoding::Srgb | Encoding::Linear => gaussian,
-    };
+    let gaussian = if is_fine { pyramid::deepen(&gaussian, &floats) } else { gaussian };
     let inverse = inverse::make(&axes, &ranks, &squares, wanted.lut, inside);
     vec![gaussian, inverse]
 }
@@ -97,9 +104,15 @@ mod tests {
     use crate::resource::decode::Decoded;
     use crate::resource::srgb_to_linear;
     use half::f16;
-    use texgraph_compiler::manifest::{Borders, Encoding};
+    use texgraph_compiler::manifest::{Borders, Compression, Encoding};
 
-    const WANTED: Wanted = Wanted { encoding: Encoding::Srgb, channels: 3, borders: Borders::Auto, lut: 256 };
+    const WANTED: Wanted = Wanted {
+        encoding: Encoding::Srgb,
+        channels: 3,
+        borders: Borders::Auto,
+        lut: 256,
+        compress: Compression::None,
+    };
 
     /// A picture without structure whose colours are correlated and lie on few values.
     fn grains(size: [u32; 2]) -> Vec<u8> {

@@ -43,6 +43,10 @@ struct Channel {
     /// How many texels are stored as each number.
     stored: Vec<u32>,
     is_flat: bool,
+    /// How far apart its least number and its greatest are.
+    range: f64,
+    /// What deviations of Gaussian numbers are multiplied by where they are stored, at most 1.
+    spread: f64,
 }
 
 /// Codes from here on are of bins that hold several numbers.
@@ -78,12 +82,18 @@ pub fn scatter(i: u32) -> u32 {
 }
 
 impl Ranks {
-    /// Counts, and finds the ranks where stored numbers change.
-    pub fn of(light: &Light<'_>, axes: &Axes) -> Ranks {
+    /// Counts, and finds the ranks where stored numbers change. `is_scaled`: channels are stored as far
+    /// spread as their numbers are, the widest as far as ever.
+    pub fn of(light: &Light<'_>, axes: &Axes, is_scaled: bool) -> Ranks {
         let mut channels: Vec<Channel> =
             (0..axes.channels).map(|axis| Channel::new(light, axes, axis)).collect();
         count(light, axes, &mut channels);
+        channels.iter_mut().for_each(Channel::measure);
+        let widest = channels.iter().map(|channel| channel.range).fold(0.0, f64::max);
         for (axis, channel) in channels.iter_mut().enumerate() {
+            if is_scaled && channel.range > 0.0 {
+                channel.spread = channel.range / widest;
+            }
             channel.order(light, axes, axis);
         }
         Ranks { texels: light.texels(), channels }
@@ -121,6 +131,11 @@ impl Ranks {
     /// Whether a channel has one number everywhere.
     pub fn is_flat(&self, channel: usize) -> bool {
         self.channels[channel].is_flat
+    }
+
+    /// The Gaussian number that is stored as a number in 0..1.
+    pub fn gaussian(&self, channel: usize, stored: f64) -> f64 {
+        self.channels[channel].gaussian(stored)
     }
 
     /// T⁻¹ (§1.3.3): the number along a channel's axis that a Gaussian number in 0..1 stands for.
@@ -247,7 +262,23 @@ impl Channel {
             steps: Vec::new(),
             stored: Vec::new(),
             is_flat: false,
+            range: 0.0,
+            spread: 1.0,
         }
+    }
+
+    /// Finds how far its numbers spread.
+    fn measure(&mut self) {
+        let filled = |bin: &usize| self.count(*bin) > 0;
+        let ends = [(0..BINS).find(filled), (0..BINS).rfind(filled)].map(Option::unwrap_or_default);
+        let [first, last] = ends.map(|bin| self.scale.number(bin as f64));
+        self.range = last - first;
+        self.is_flat = self.range <= FLAT;
+    }
+
+    /// The Gaussian number that is stored as a number in 0..1.
+    fn gaussian(&self, stored: f64) -> f64 {
+        ((stored - 0.5) / self.spread + 0.5).clamp(0.0, 1.0)
     }
 
     fn count(&self, bin: usize) -> u32 {
@@ -257,18 +288,14 @@ impl Channel {
     /// Finds what each bin is stored as.
     fn order(&mut self, light: &Light<'_>, axes: &Axes, axis: usize) {
         let texels = light.texels();
-        let filled = |bin: &usize| self.count(*bin) > 0;
-        let ends = [(0..BINS).find(filled), (0..BINS).rfind(filled)].map(Option::unwrap_or_default);
-        let [first, last] = ends.map(|bin| self.scale.number(bin as f64));
-        if last - first <= FLAT {
-            self.is_flat = true;
+        if self.is_flat {
             self.stored = vec![0; 256];
             self.stored[usize::from(MIDDLE)] = texels as u32;
             return;
         }
         // The first rank of each stored number but 0, of texels 0..N.
         let first_rank = |code: u32| {
-            let below = share_below((f64::from(code) - 0.5) / 255.0) * texels as f64;
+            let below = share_below(self.gaussian((f64::from(code) - 0.5) / 255.0)) * texels as f64;
             (below - 0.5).ceil().clamp(0.0, texels as f64) as u32
         };
         let ranks: Vec<u32> = (1..256).map(first_rank).collect();
