@@ -63,6 +63,8 @@ pub fn make(axes: &Axes, ranks: &Ranks, squares: &[DVec3], width: u32, is_inside
         let along = DVec3::from_array(axes.directions[channel].map(f64::from));
         let offset = if ranks.is_flat(channel) { 0.0 } else { value - axes.mean_along(channel) };
         let part = along * offset + DVec3::from_array(axes.mean) / axes.channels as f64;
+        // A single channel is grey.
+        let part = if axes.channels == 1 { DVec3::splat(part.x) } else { part };
         writer.write(part.as_vec3().extend(f32::from(u8::from(is_inside))), slot);
     }
     Made { field: "inverse", table, bytes }
