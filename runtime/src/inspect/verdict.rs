@@ -2,7 +2,7 @@
 //!
 //! The bounds are set by looking: at the sheets of the photographs of `benches/photos` (bricks, cobbles and
 //! planks fail, the others don't) and of what the examples draw (the coats of giraffes and cracked mud
-//! lose their lines, weave and scales their order). docs/quality.md has the figures of each.
+//! lose their lines, weave and scales their order). docs/stochastic.md has the figures of each.
 
 use super::Report;
 use crate::resource::exemplar::SEAM;
