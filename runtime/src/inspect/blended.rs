@@ -61,16 +61,14 @@ pub struct Blended {
     asked: Asked,
 }
 
-/// All that is drawn. A panel shows so many pictures as fit, `samples` have a texel a pixel.
-pub struct Blends {
-    /// For the sheet.
-    pub sheets: Vec<Picture>,
-    /// At places all over the plane, of each blend.
-    pub samples: Vec<Shown>,
-    /// The picture, once.
-    pub whole: Shown,
-    /// The blend that keeps the histogram, four times as much.
-    pub wide: Shown,
+/// What is drawn of one of the blends.
+pub struct Blend {
+    /// For the sheet: so many pictures as fit.
+    pub panel: Picture,
+    /// Texels at places all over the plane.
+    pub samples: Shown,
+    /// Made smaller; of the picture itself once, of its blends twice as wide and high.
+    pub view: Shown,
 }
 
 /// The numbers that were drawn: colours in linear light, data, or slopes.
@@ -101,31 +99,19 @@ impl Blended {
         Ok(Blended { program, tables, size, asked: *asked })
     }
 
-    /// Draws everything that is looked at.
-    pub fn draw(&self) -> Result<Blends, InspectError> {
+    /// Draws a blend; the first is the picture itself.
+    pub fn draw(&self, blend: usize) -> Result<Blend, InspectError> {
+        let mut scene = Scene::new(&self.program, &self.tables, blend)?;
+        let mut drawn = |size, region, spread| scene.render(&self.request(size, region, spread), &|_| {});
         let [width, height] = self.size.map(f64::from);
-        let [across, down] = [width, height].map(|side| SHOWN * width.max(height) / side);
-        let panel = ([PANEL; 2], [across, down], 0.0);
-        let [texels_across, texels_down] = [width, height].map(|side| f64::from(SAMPLES) / side);
-        let sparse = ([SAMPLES; 2], [texels_across, texels_down], SPREAD);
-        let reduced = self.reduced();
-        let (mut sheets, mut samples, mut looks) = (Vec::new(), Vec::new(), Vec::new());
-        for output in 0..BLENDS {
-            let mut scene = Scene::new(&self.program, &self.tables, output)?;
-            let mut draw = |view| Ok::<_, InspectError>(scene.render(&self.request(view), &|_| {})?);
-            sheets.push(draw(panel)?);
-            let mut sample = draw(sparse)?;
-            // What is nearly clear has no colour that is seen.
-            sample.pixels.retain(|pixel| self.asked.encoding != Encoding::Srgb || pixel[3] >= 0.5);
-            samples.push(self.shown(&sample));
-            if output == 0 {
-                looks.push(self.shown(&draw((reduced, [1.0; 2], 0.0))?));
-            } else if output == BLENDS - 1 {
-                looks.push(self.shown(&draw((reduced.map(|side| 2 * side), [2.0; 2], 0.0))?));
-            }
-        }
-        let [whole, wide] = <[Shown; 2]>::try_from(looks).unwrap_or_else(|_| [Shown::none(), Shown::none()]);
-        Ok(Blends { sheets, samples, whole, wide })
+        let panel = drawn([PANEL; 2], [width, height].map(|side| SHOWN * width.max(height) / side), 0.0)?;
+        let texels = [width, height].map(|side| f64::from(SAMPLES) / side);
+        let mut samples = drawn([SAMPLES; 2], texels, SPREAD)?;
+        // What is nearly clear has no colour that is seen.
+        samples.pixels.retain(|pixel| self.asked.encoding != Encoding::Srgb || pixel[3] >= 0.5);
+        let pictures = if blend == 0 { 1 } else { 2 };
+        let view = drawn(self.reduced().map(|side| pictures * side), [f64::from(pictures); 2], 0.0)?;
+        Ok(Blend { panel, samples: self.shown(&samples), view: self.shown(&view) })
     }
 
     /// The picture's size, divided by a whole number that makes it small enough.
@@ -134,7 +120,8 @@ impl Blended {
         self.size.map(|side| (side / by).max(1))
     }
 
-    fn request(&self, (size, [across, down], spread): ([u32; 2], [f64; 2], f32)) -> Request {
+    /// So many pictures across and down.
+    fn request(&self, size: [u32; 2], [across, down]: [f64; 2], spread: f32) -> Request {
         let mut settings = Settings::new();
         for (name, value) in [("tile", self.asked.tile), ("spread", spread)] {
             // Both are params of the program above, and finite.
@@ -151,10 +138,6 @@ impl Blended {
 }
 
 impl Shown {
-    fn none() -> Shown {
-        Shown { size: [1, 1], numbers: vec![[0.0; 3]] }
-    }
-
     /// The numbers along an axis, made Gaussian: what the method works on.
     pub fn along(&self, axis: &[f32; 3]) -> Field {
         let place = |[x, y, z]: &[f32; 3]| x * axis[0] + y * axis[1] + z * axis[2];

@@ -1,6 +1,6 @@
 //! How far colours move when a picture is blended.
 
-use super::blended::{BLENDS, Shown};
+use super::blended::{BLENDS, Blend, Shown};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
 
@@ -19,10 +19,10 @@ pub struct Distances {
 
 impl Distances {
     /// Of the blends from the first, the picture.
-    pub(super) fn between(samples: &[Shown], axes: &[[f32; 3]]) -> Distances {
+    pub(super) fn between(blends: &[Blend; BLENDS], axes: &[[f32; 3]]) -> Distances {
         let own = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let lines: Vec<[f32; 3]> = own.into_iter().chain(axes.iter().copied()).collect();
-        let along: Vec<Along> = lines.into_par_iter().map(|line| Along::of(samples, &line)).collect();
+        let along: Vec<Along> = lines.into_par_iter().map(|line| Along::of(blends, &line)).collect();
         let widest = along.iter().map(|along| along.range).fold(0.0, f32::max);
         let seen = |along: &&Along| along.range >= widest * SEEN;
         let worst =
@@ -48,12 +48,12 @@ struct Along {
 }
 
 impl Along {
-    fn of(samples: &[Shown], line: &[f32; 3]) -> Along {
-        let sorted: Vec<Vec<f32>> = samples.iter().map(|shown| sorted(shown, line)).collect();
-        let picture = sorted.first().map_or(&[] as &[f32], Vec::as_slice);
+    fn of(blends: &[Blend; BLENDS], line: &[f32; 3]) -> Along {
+        let sorted = blends.each_ref().map(|blend| sorted(&blend.samples, line));
+        let [picture, ..] = &sorted;
         let at = |hundredth: usize| picture.get(picture.len() * hundredth / 100).copied().unwrap_or(0.0);
-        let to = |blend: usize| sorted.get(blend).map_or(0.0, |blend| distance(picture, blend));
-        Along { range: at(99) - at(1), distances: std::array::from_fn(to) }
+        let distances = sorted.each_ref().map(|blend| distance(picture, blend));
+        Along { range: at(99) - at(1), distances }
     }
 }
 

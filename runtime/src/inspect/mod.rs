@@ -33,7 +33,7 @@ use crate::project::Project;
 use crate::render::RenderError;
 use crate::resource::exemplar::{self, Wanted};
 use crate::resource::{Decoded, decode};
-use blended::{Blended, Blends};
+use blended::Blended;
 use std::path::Path;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
 use texgraph_compiler::manifest::{Borders, Encoding};
@@ -113,11 +113,12 @@ pub fn inspect(library: &Library, path: &Path, asked: &Asked) -> Result<Report, 
     let axes = exemplar::axes(&picture, &wanted);
     let steps = exemplar::steps(&picture, &wanted).map(|[inside, across]| ratio(across, inside));
     drop(picture);
-    let Blends { sheets, samples, whole, wide } = blended.draw()?;
+    let blends = [blended.draw(0)?, blended.draw(1)?, blended.draw(2)?, blended.draw(3)?];
+    let [repeated, .., histogram] = &blends;
     // Normals have two axes of like weight; of colours the first carries nearly all.
     let shown = if asked.encoding == Encoding::Normal { 2 } else { 1 };
     let fields: Vec<[Field; 2]> =
-        axes.iter().take(shown).map(|axis| [whole.along(axis), wide.along(axis)]).collect();
+        axes.iter().take(shown).map(|axis| [repeated.view.along(axis), histogram.view.along(axis)]).collect();
     let structure = Structure::of(fields.iter().map(|[whole, _]| whole), blended.size);
     let mean =
         |of: &dyn Fn(&[Field; 2]) -> f64| fields.iter().map(of).sum::<f64>() / fields.len().max(1) as f64;
@@ -125,7 +126,7 @@ pub fn inspect(library: &Library, path: &Path, asked: &Asked) -> Result<Report, 
         size: blended.size,
         tile: f64::from(asked.tile) * f64::from(blended.size[0].min(blended.size[1])),
         steps,
-        colors: Distances::between(&samples, &axes),
+        colors: Distances::between(&blends, &axes),
         structure,
         unevenness: mean(&|[whole, _]| whole.unevenness()),
         edges: mean(&|[whole, wide]| {
@@ -133,7 +134,7 @@ pub fn inspect(library: &Library, path: &Path, asked: &Asked) -> Result<Report, 
             ratio(wide.edges(deviation), whole.edges(deviation))
         }),
         verdict: Verdict::Suits,
-        sheet: sheet::of(&sheets, asked.encoding),
+        sheet: sheet::of(&blends, asked.encoding),
     };
     report.verdict = Verdict::of(&report);
     Ok(report)

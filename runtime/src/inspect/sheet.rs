@@ -1,6 +1,6 @@
 //! The contact sheet: what is to be looked at before figures are believed.
 
-use super::blended::{BLENDS, PANEL};
+use super::blended::{BLENDS, Blend, PANEL};
 use crate::picture::{Content, Picture};
 use texgraph_compiler::manifest::Encoding;
 
@@ -11,14 +11,14 @@ const GAP: u32 = 8;
 const ACROSS: u32 = 2;
 
 /// The panels two by two, in reading order.
-pub fn of(panels: &[Picture], encoding: Encoding) -> Picture {
+pub fn of(blends: &[Blend; BLENDS], encoding: Encoding) -> Picture {
     let down = (BLENDS as u32).div_ceil(ACROSS);
     let [width, height] = [ACROSS, down].map(|panels| panels * (PANEL + GAP) - GAP);
     let pixel = |x: u32, y: u32| {
         let [column, row] = [x / (PANEL + GAP), y / (PANEL + GAP)];
         let [x, y] = [x % (PANEL + GAP), y % (PANEL + GAP)];
-        let panel = panels.get((row * ACROSS + column) as usize).filter(|_| x < PANEL && y < PANEL);
-        panel.and_then(|panel| panel.pixels.get((y * PANEL + x) as usize)).copied().unwrap_or([1.0; 4])
+        let blend = blends.get((row * ACROSS + column) as usize).filter(|_| x < PANEL && y < PANEL);
+        blend.and_then(|blend| blend.panel.pixels.get((y * PANEL + x) as usize)).copied().unwrap_or([1.0; 4])
     };
     Picture {
         size: [width, height],
