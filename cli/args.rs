@@ -67,6 +67,16 @@ their defaults; of a branch that they do not decide each arm counts half, and a 
 takes half of its bound. An `if` without samples, fetches or loops in its arms computes both.
 Bytes of tables need the pictures; without them they are unknown, which is no error.";
 
+const INSPECT: &str = "\
+Examples:
+  texgraph inspect moss.png -o sheet.png
+  texgraph inspect moss_normal.png --encoding normal --format json
+Says whether a picture suits `exemplar` and `stochastic`, which show a photograph without end. What is
+made of grains, blades, leaves or stones does; bricks, planks and weave lose their order. The sheet
+shows, each 2.5 times as wide as the picture's longer side and in reading order: the picture repeated,
+and blended linearly, with its variance kept, with its histogram kept, which is the method.
+The figures are explained in docs/stochastic.md.";
+
 const FMT: &str = "\
 Examples:
   texgraph fmt tiling.tex          rewrites the file if its layout is not the canonical one
@@ -99,6 +109,8 @@ pub enum Command {
     Cost(Cost),
     /// Draw the node diagram of a texture or a node
     Graph(Graph),
+    /// Say whether a picture suits tiling and blending by example
+    Inspect(Inspect),
     /// Make and check tile sets: sheets of tiles that fit together
     Tiles(Tiles),
     /// Put .tex files into their canonical layout
@@ -116,6 +128,7 @@ impl Command {
             | Command::Render(Render { common, .. })
             | Command::Cost(Cost { common, .. })
             | Command::Graph(Graph { common, .. }) => common.message_format,
+            Command::Inspect(inspect) => inspect.message_format,
             Command::Tiles(tiles) => tiles.message_format(),
             Command::Fmt(_) | Command::Explain(_) => MessageFormat::Human,
         }
@@ -362,6 +375,51 @@ pub struct Graph {
 }
 
 #[derive(clap::Args)]
+#[command(after_help = INSPECT)]
+pub struct Inspect {
+    /// The picture: PNG, JPEG or TGA
+    pub picture: PathBuf,
+    /// The PNG file that is written: the picture repeated, and its blends
+    #[arg(short, value_name = "SHEET.png")]
+    pub output_file: Option<PathBuf>,
+    /// How the picture's numbers are read, as by `exemplar`
+    #[arg(long, value_enum, default_value_t)]
+    pub encoding: InspectEncoding,
+    /// Channels that are made Gaussian: 3, or 1 of a grey picture
+    #[arg(long, value_name = "N", default_value = "3", value_parser = channels)]
+    pub channels: u32,
+    /// The height of a hexagon in pictures, as of `stochastic`; above 0, at most 1
+    #[arg(long, value_name = "PICTURES", default_value = "0.5", value_parser = tile)]
+    pub tile: f32,
+    /// How the figures are printed
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub format: InspectFormat,
+    /// How errors are printed, on standard error
+    #[arg(long, value_enum, default_value_t, value_name = "FORMAT")]
+    pub message_format: MessageFormat,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum InspectEncoding {
+    /// Colours
+    #[default]
+    Srgb,
+    /// Data
+    Linear,
+    /// Normals
+    Normal,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum InspectFormat {
+    /// A table for people
+    #[default]
+    Text,
+    /// One JSON object
+    Json,
+}
+
+#[derive(clap::Args)]
 #[command(after_help = FMT)]
 pub struct Fmt {
     /// The .tex files; - is standard input
@@ -415,6 +473,20 @@ fn alpha(text: &str) -> Result<f32, String> {
 fn seconds(text: &str) -> Result<f32, String> {
     let seconds = finite(text)? as f32;
     if seconds.is_finite() { Ok(seconds) } else { Err(format!("`{text}` is too large")) }
+}
+
+fn channels(text: &str) -> Result<u32, String> {
+    let channels = text.parse().ok().filter(|channels| [1, 3].contains(channels));
+    channels.ok_or_else(|| format!("colours have 3 channels and grey pictures 1, not `{text}`"))
+}
+
+fn tile(text: &str) -> Result<f32, String> {
+    let tile = finite(text)? as f32;
+    if tile > 0.0 && tile <= 1.0 {
+        Ok(tile)
+    } else {
+        Err(format!("a hexagon is up to 1 picture high, not `{text}`"))
+    }
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -18,6 +18,7 @@ mod cost;
 mod explain;
 mod fmt;
 mod graph;
+mod inspect;
 mod output;
 mod problem;
 mod program;
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Cost(args) => cost::run(args, &mut report),
         Command::Graph(args) => graph::run(args),
+        Command::Inspect(args) => inspect::run(args),
         Command::Tiles(args) => tiles::run(args, &mut report),
         Command::Fmt(args) => fmt::run(args, &mut report),
         Command::Explain(args) => explain::run(args),

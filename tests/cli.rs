@@ -14,6 +14,8 @@ mod fmt;
 mod graph;
 #[path = "cli/help.rs"]
 mod help;
+#[path = "cli/inspect.rs"]
+mod inspect;
 #[path = "cli/profile.rs"]
 mod profile;
 #[path = "cli/render.rs"]

@@ -16,6 +16,7 @@ const PAGES: &[&str] = &[
     "docs/embedding.md",
     "docs/architecture.md",
     "docs/quality.md",
+    "docs/stochastic.md",
 ];
 
 fn root() -> PathBuf {

@@ -133,6 +133,59 @@ def tile_sets():
         save(strip, "tile_codes.png")
 
 
+def row(pictures, name, down=1, gap=8):
+    """Pictures of one size side by side, in so many rows."""
+    across = len(pictures) // down
+    side = pictures[0].width
+    strip = Image.new("RGB", (across * (side + gap) - gap, down * (side + gap) - gap), "white")
+    for i, picture in enumerate(pictures):
+        strip.paste(picture, (i % across * (side + gap), i // across * (side + gap)))
+    save(strip, name)
+
+
+def stochastic():
+    """The pictures of docs/stochastic.md: its blocks, over the photographs of the examples and the bench."""
+    text = (ROOT / "docs/stochastic.md").read_text()
+    blocks = {re.search(r"^texture (\w+)", block, re.M)[1]: block for block in re.findall(r"```tex\n(.*?)```", text, re.S)}
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        for photo in [*(ROOT / "runtime/benches/photos").iterdir(), *(ROOT / "examples/photos").iterdir()]:
+            (folder / photo.name).write_bytes(photo.read_bytes())
+
+        def drawn(block, texture, side=320):
+            file, out = folder / "block.tex", folder / "out.png"
+            file.write_text(block)
+            size = ["--size", f"{2 * side}x{2 * side}"]
+            subprocess.run([COMMAND, "render", f"{file}:{texture}", "-o", out, *size], check=True)
+            return Image.open(out).convert("RGB").resize((side, side), Image.Resampling.BOX)
+
+        def blends(photo, repeats):
+            values = {
+                "repeated": "i.sample(at)",
+                "linear": "e.stochastic(at, blend: linear)",
+                "variance": "e.stochastic(at, blend: variance)",
+                "histogram": "e.stochastic(at)",
+            }
+            return f'let e = exemplar("{photo}")\nlet i = image("{photo}")\n' + "".join(
+                f"texture {name}(uv: vec2) -> (color: color) {{ let at = uv * {repeats}\n color = {value} }}\n"
+                for name, value in values.items()
+            )
+
+        names = ["repeated", "linear", "variance", "histogram"]
+        row([drawn(blends("rock.jpg", 3.0), name, 280) for name in names], "stochastic_blends.jpg")
+        orderly = ["brick_grey.png", "cobbles.jpg", "planks.jpg"]
+        panels = [drawn(blends(photo, 1.5), name) for name in ["repeated", "histogram"] for photo in orderly]
+        row(panels, "stochastic_failure.jpg", down=2)
+        ice = Image.open(folder / "ice.jpg").convert("RGB")
+        for channel, name in zip(ice.split(), ["red", "green", "blue"]):
+            channel.save(folder / f"{name}.png")
+        plain, axes = [drawn(blends("ice.jpg", 0.5), name) for name in ["repeated", "histogram"]]
+        row([plain, drawn(blocks["by_channel"], "by_channel"), axes], "stochastic_axes.jpg")
+        afar = ["repeated", "plain", "filtered", "blended"]
+        row([drawn(blocks["repeated"], name, 280) for name in afar], "stochastic_levels.jpg")
+        row([drawn(blocks["lit_once"], name, 480) for name in ["lit_once", "lit_floor"]], "stochastic_normals.jpg")
+
+
 if __name__ == "__main__":
     if not COMMAND.exists():
         sys.exit("build it first: cargo build --release")
@@ -143,3 +196,4 @@ if __name__ == "__main__":
     rows()
     signboard()
     tile_sets()
+    stochastic()

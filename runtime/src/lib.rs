@@ -15,6 +15,7 @@ pub mod bake;
 pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
+pub mod inspect;
 pub mod picture;
 pub mod project;
 pub mod render;

@@ -14,7 +14,7 @@ fn the_first_page_is_as_reviewed() {
 
 #[test]
 fn every_subcommand_shows_an_example() {
-    for name in ["check", "build", "render", "cost", "graph", "tiles", "fmt", "explain"] {
+    for name in ["check", "build", "render", "cost", "graph", "inspect", "tiles", "fmt", "explain"] {
         let run = Workshop::new(&[]).run(&[name, "--help"]);
         assert_eq!((run.code, run.err.as_str()), (0, ""));
         assert!(run.out.contains("Example") && run.out.contains(&format!("texgraph {name} ")), "{}", run.out);
@@ -26,7 +26,7 @@ fn every_subcommand_shows_an_example() {
 fn senseless_calls_are_usage_errors() {
     let shop = Workshop::new(&[]);
     shop.run::<&str>(&[]).fails(2, "Usage: texgraph");
-    for name in ["check", "build", "render", "cost", "graph", "tiles", "fmt"] {
+    for name in ["check", "build", "render", "cost", "graph", "inspect", "tiles", "fmt"] {
         shop.run(&[name]).fails(2, "Usage: texgraph");
     }
 }

@@ -3,7 +3,7 @@
 use super::light::{BATCH, Light, MAX_CHANNELS, NONE};
 
 /// How many times the mean step between neighbours the step across the borders may be.
-const SEAM: f64 = 1.6;
+pub const SEAM: f64 = 1.6;
 
 /// Whether opposite borders differ more than neighbours do, across or down.
 pub fn differ(light: &Light<'_>) -> bool {

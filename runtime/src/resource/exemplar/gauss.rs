@@ -12,7 +12,7 @@ pub fn share_below(g: f64) -> f64 {
 }
 
 /// The share of a Gaussian distribution of mean 0 and deviation 1 below x.
-fn cumulative(x: f64) -> f64 {
+pub fn cumulative(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 

@@ -19,6 +19,8 @@ use super::pyramid;
 use super::table::{self, Made};
 use crate::project::Project;
 use axes::Axes;
+pub use borders::SEAM;
+pub(crate) use gauss::cumulative;
 use light::Light;
 use ranks::Ranks;
 pub use ranks::scatter;
@@ -95,6 +97,12 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
 pub fn axes(picture: &Decoded, wanted: &Wanted) -> Vec<[f32; 3]> {
     let axes = Axes::of(&Light::new(picture, wanted.encoding, wanted.channels as usize));
     axes.directions[..axes.channels].to_vec()
+}
+
+/// Across and down: the mean difference of neighbours, and that of the first texel from the last. Where
+/// the second is more than [`SEAM`] times the first the picture is taken not to wrap.
+pub fn steps(picture: &Decoded, wanted: &Wanted) -> [[f64; 2]; 2] {
+    borders::steps(&Light::new(picture, wanted.encoding, wanted.channels as usize))
 }
 
 #[cfg(test)]

@@ -2,11 +2,14 @@
 //! variances of 16 × 16 repeats, texel by texel and filtered, beside those of linear blending.
 //!
 //! Run with `cargo bench -p texgraph-runtime --no-default-features --bench stochastic`; `-- rock.jpg` for
-//! some of the photographs only.
+//! some of the photographs only, `-- autocorrelation` or `-- seams` for what is told of those instead.
+
+mod autocorrelation;
+mod seams;
 
 use half::f16;
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use texgraph_compiler::manifest::Encoding;
 use texgraph_compiler::{Library, Options, Program, compile};
 use texgraph_runtime::cpu::Scene;
@@ -35,32 +38,66 @@ const PHOTOS: &[(&str, Encoding)] = &[
 fn main() {
     let asked: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let library = Library::standard().expect("the library is right");
+    let is_asked = |file: &str| {
+        let mut names = asked.iter().filter(|name| name.contains('.')).peekable();
+        names.peek().is_none() || names.any(|name| name == file)
+    };
+    let photos = PHOTOS.iter().filter(|(file, _)| is_asked(file));
+    if asked.iter().any(|name| name == "autocorrelation") {
+        return autocorrelation::tell(&library, photos);
+    }
+    if asked.iter().any(|name| name == "seams") {
+        return seams::tell(&library, photos);
+    }
     println!(
         "{REPEATS} × {REPEATS} repeats; distances are those of Kolmogorov and Smirnov, the worst channel"
     );
-    for (file, encoding) in PHOTOS {
-        if asked.is_empty() || asked.iter().any(|name| name == file) {
-            // Where parts stay inside, the picture's middle is seen more often than its borders.
-            if measure(&library, file, *encoding, "auto") {
-                measure(&library, file, *encoding, "repeat");
-            }
+    for (file, encoding) in photos {
+        // Where parts stay inside, the picture's middle is seen more often than its borders.
+        if measure(&library, file, *encoding, "auto") {
+            measure(&library, file, *encoding, "repeat");
         }
     }
+}
+
+/// A texture of a text over the photographs, and what it reads.
+fn loaded(library: &Library, text: &str, texture: &str) -> (Program, Tables) {
+    let files: HashMap<String, String> = [("main.tex".to_owned(), text.to_owned())].into();
+    let options = Options { texture: Some(texture.into()), ..Options::default() };
+    let compiled = compile(library, "main.tex", &files, &options);
+    let mut program = compiled.unwrap_or_else(|error| panic!("{error:?}")).program;
+    let project = Project::new(&photos().join("main.tex"), false);
+    let tables = load(&mut program, &project).expect("the photograph is read");
+    (program, tables)
+}
+
+fn photos() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/photos")
+}
+
+/// What an encoding is called, as in a text.
+fn word(encoding: Encoding) -> &'static str {
+    if encoding == Encoding::Normal { "normal" } else { "srgb" }
+}
+
+/// Colours in linear light, or the slopes of normals.
+fn numbers([x, y, z, _]: [f32; 4], encoding: Encoding) -> [f64; 3] {
+    let [x, y, z] = [x, y, z].map(f64::from);
+    if encoding == Encoding::Normal { [-x / z.max(0.05), -y / z.max(0.05), 0.0] } else { [x, y, z] }
 }
 
 /// What is drawn: colours in linear light, slopes of normals.
 struct Photo {
     programs: Vec<(&'static str, Program, Tables)>,
     side: u32,
-    is_normal: bool,
+    encoding: Encoding,
 }
 
 fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str) -> bool {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/photos");
-    let picture = image::open(folder.join(file)).expect("a photograph");
+    let picture = image::open(photos().join(file)).expect("a photograph");
     let side = picture.width();
     let is_normal = encoding == Encoding::Normal;
-    let word = if is_normal { "normal" } else { "srgb" };
+    let word = word(encoding);
     let texture = |name: &str, value: &str| {
         format!("texture {name}(uv: vec2) -> (value: vec4) {{ value = {value} }}\n")
     };
@@ -80,17 +117,13 @@ fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str) -> boo
         texture("between", "e.stochastic(uv)"),
         texture("linear_between", "e.stochastic(uv, blend: linear)"),
     ];
-    let files: HashMap<String, String> = [("main.tex".to_owned(), text.concat())].into();
+    let text = text.concat();
     let names = ["repeated", "histogram", "linear", "shifted", "between", "linear_between"];
     let programs = names.map(|name| {
-        let options = Options { texture: Some(name.into()), ..Options::default() };
-        let compiled = compile(library, "main.tex", &files, &options);
-        let mut program = compiled.unwrap_or_else(|error| panic!("{error:?}")).program;
-        let project = Project::new(&folder.join("main.tex"), false);
-        let tables = load(&mut program, &project).expect("the photograph is read");
+        let (program, tables) = loaded(library, &text, name);
         (name, program, tables)
     });
-    let photo = Photo { programs: programs.into(), side, is_normal };
+    let photo = Photo { programs: programs.into(), side, encoding };
     let (_, program, tables) = &photo.programs[1];
     let inverse = floats(table(program, tables, "inverse"));
     let is_inside = inverse[3] > 0.5;
@@ -187,7 +220,7 @@ impl Photo {
     fn axes(&self) -> Vec<[f64; 3]> {
         let (_, program, tables) = &self.programs[1];
         let inverse = floats(table(program, tables, "inverse"));
-        let channels = if self.is_normal { 2 } else { 3 };
+        let channels = if self.encoding == Encoding::Normal { 2 } else { 3 };
         let width = inverse.len() / 4 / (14 * channels);
         let axis = |channel: usize| {
             let row = &inverse[4 * 14 * width * channel..][..4 * width];
@@ -217,14 +250,9 @@ impl Photo {
             let region = [x, y, x + f64::from(repeats), y + f64::from(repeats)];
             let request = Request { region, ..Request::new([size; 2]) };
             let picture = scene.render(&request, &|_| {}).expect("it is drawn");
-            picture.pixels.iter().for_each(|pixel| drawn.add(self.numbers(*pixel), axes));
+            picture.pixels.iter().for_each(|pixel| drawn.add(numbers(*pixel, self.encoding), axes));
         }
         drawn
-    }
-
-    fn numbers(&self, [x, y, z, _]: [f32; 4]) -> [f64; 3] {
-        let [x, y, z] = [x, y, z].map(f64::from);
-        if self.is_normal { [-x / z.max(0.05), -y / z.max(0.05), 0.0] } else { [x, y, z] }
     }
 }
 
