@@ -36,7 +36,7 @@ use crate::resource::{Decoded, decode};
 use blended::Blended;
 use std::path::Path;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
-use texgraph_compiler::manifest::{Borders, Encoding};
+use texgraph_compiler::manifest::{Borders, Compression, Encoding};
 use texgraph_compiler::{Failure, Library};
 
 /// Edges are looked for in what is blurred by one part in so many of the shorter side: there features
@@ -151,7 +151,13 @@ fn wanted(asked: &Asked) -> Wanted {
         (_, true) => 1,
         (_, false) => 3,
     };
-    Wanted { encoding: asked.encoding, channels, borders: Borders::Auto, lut: 256 }
+    Wanted {
+        encoding: asked.encoding,
+        channels,
+        borders: Borders::Auto,
+        lut: 256,
+        compress: Compression::None,
+    }
 }
 
 /// 1 where both are nothing.
