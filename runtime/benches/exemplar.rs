@@ -2,7 +2,7 @@
 //! 1.11 (Deliot & Heitz 2019) with the same truncation and the same order of equal values.
 //!
 //! Run with `cargo bench -p texgraph-runtime --no-default-features --bench exemplar`; `-- 4096` for
-//! another size, `-- FILE.png` for pictures other than the made-up one.
+//! another size, `-- FILE.png` for pictures other than the made-up one. Memory is told on Linux.
 
 use std::time::{Duration, Instant};
 use texgraph_compiler::manifest::{Borders, Compression, Encoding};
@@ -30,6 +30,7 @@ fn main() {
         _ => vec![(format!("clouds of colour, {side}²"), [side, side], clouds(side))],
     };
     for (name, size, pixels) in pictures {
+        memory(&name, size, &pixels);
         compare(&name, size, &pixels);
     }
 }
@@ -37,6 +38,26 @@ fn main() {
 fn read(path: &str) -> (String, [u32; 2], Vec<u8>) {
     let picture = image::open(path).expect("a picture").to_rgb8();
     (path.to_owned(), [picture.width(), picture.height()], picture.into_raw())
+}
+
+/// Tells how much memory there is at most, with the picture and what is made of it. Linux knows.
+fn memory(name: &str, size: [u32; 2], pixels: &[u8]) {
+    let kilobytes = |what: &str| -> Option<u64> {
+        let status = std::fs::read_to_string("/proc/self/status").ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix(what))?;
+        line.trim_matches(|c: char| !c.is_ascii_digit()).parse().ok()
+    };
+    let picture = Decoded::rgb(size, pixels.to_vec()).expect("as many texels as its size says");
+    // From here on the peak is counted anew.
+    let is_reset = std::fs::write("/proc/self/clear_refs", "5").is_ok();
+    let before = kilobytes("VmRSS:");
+    let made = exemplar::of_picture(&picture, &WANTED);
+    let (Some(before), Some(peak), true) = (before, kilobytes("VmHWM:"), is_reset) else { return };
+    let input = pixels.len() as f64;
+    let most = (peak.saturating_sub(before) * 1024) as f64 / input + 1.0;
+    let left: usize = made.iter().map(|made| made.bytes.len()).sum();
+    let left = left as f64 / input;
+    println!("{name}: at most {most:.2} times the picture's bytes, with it and with {left:.2} that are made");
 }
 
 fn compare(name: &str, size: [u32; 2], pixels: &[u8]) {

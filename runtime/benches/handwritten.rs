@@ -1,5 +1,6 @@
 //! The compiler's shader for basic tiling beside the one an expert writes by hand, and that for daisies
-//! and a stochastic texture beside the published listings, on a software adapter: CPU time of the process a pixel, drawn in turns. The ratio of each round's two times is
+//! and a stochastic texture beside the published listings, on a software adapter: CPU time of the process
+//! a pixel, drawn in turns. The ratio of each round's two times is
 //! one number of the sample; its mean with a 95 % interval is what counts, and beside it the same of
 //! the compiler's shader against itself, which shows what this machine can tell apart.
 //!

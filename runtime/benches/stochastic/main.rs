@@ -2,7 +2,8 @@
 //! variances of 16 × 16 repeats, texel by texel and filtered, beside those of linear blending.
 //!
 //! Run with `cargo bench -p texgraph-runtime --no-default-features --bench stochastic`; `-- rock.jpg` for
-//! some of the photographs only, `-- autocorrelation` or `-- seams` for what is told of those instead.
+//! some of the photographs only, `-- brief` for the first level only, `-- autocorrelation` or `-- seams`
+//! for what is told of those instead.
 
 mod autocorrelation;
 mod seams;
@@ -15,7 +16,7 @@ use texgraph_compiler::{Library, Options, Program, compile};
 use texgraph_runtime::cpu::Scene;
 use texgraph_runtime::project::Project;
 use texgraph_runtime::render::Request;
-use texgraph_runtime::resource::{SrgbEncoder, Tables, load};
+use texgraph_runtime::resource::{SrgbEncoder, Tables, load, srgb_to_linear};
 
 /// Repeats along each axis, and how many are drawn at once.
 const REPEATS: u32 = 16;
@@ -49,13 +50,14 @@ fn main() {
     if asked.iter().any(|name| name == "seams") {
         return seams::tell(&library, photos);
     }
+    let is_brief = asked.iter().any(|name| name == "brief");
     println!(
         "{REPEATS} × {REPEATS} repeats; distances are those of Kolmogorov and Smirnov, the worst channel"
     );
     for (file, encoding) in photos {
         // Where parts stay inside, the picture's middle is seen more often than its borders.
-        if measure(&library, file, *encoding, "auto") {
-            measure(&library, file, *encoding, "repeat");
+        if measure(&library, file, *encoding, "auto", is_brief) {
+            measure(&library, file, *encoding, "repeat", is_brief);
         }
     }
 }
@@ -86,6 +88,15 @@ fn numbers([x, y, z, _]: [f32; 4], encoding: Encoding) -> [f64; 3] {
     if encoding == Encoding::Normal { [-x / z.max(0.05), -y / z.max(0.05), 0.0] } else { [x, y, z] }
 }
 
+/// The same as a picture of 8 bits shows it.
+fn shown([x, y, z, w]: [f32; 4], encoding: Encoding, encoder: &SrgbEncoder) -> [f64; 3] {
+    let rounded = |x: f32| match encoding {
+        Encoding::Normal => ((x.clamp(-1.0, 1.0) * 127.0).round()) / 127.0,
+        _ => srgb_to_linear(f64::from(encoder.encode(x)) / 255.0) as f32,
+    };
+    numbers([rounded(x), rounded(y), rounded(z), w], encoding)
+}
+
 /// What is drawn: colours in linear light, slopes of normals.
 struct Photo {
     programs: Vec<(&'static str, Program, Tables)>,
@@ -93,7 +104,8 @@ struct Photo {
     encoding: Encoding,
 }
 
-fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str) -> bool {
+/// Whether parts stay inside. `is_brief`: at the first level alone.
+fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str, is_brief: bool) -> bool {
     let picture = image::open(photos().join(file)).expect("a photograph");
     let side = picture.width();
     let is_normal = encoding == Encoding::Normal;
@@ -116,9 +128,10 @@ fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str) -> boo
         ),
         texture("between", "e.stochastic(uv)"),
         texture("linear_between", "e.stochastic(uv, blend: linear)"),
+        texture("two_between", "e.stochastic(uv, taps: 2)"),
     ];
     let text = text.concat();
-    let names = ["repeated", "histogram", "linear", "shifted", "between", "linear_between"];
+    let names = ["repeated", "histogram", "linear", "shifted", "between", "linear_between", "two_between"];
     let programs = names.map(|name| {
         let (program, tables) = loaded(library, &text, name);
         (name, program, tables)
@@ -142,17 +155,29 @@ fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str) -> boo
         100.0 * ours.variance,
         100.0 * theirs.variance
     );
-    println!("  level  distance (linear)  along axes (linear)   variance (linear)   mean, 255ths (linear)");
+    let two = photo.drawn(6, 0, &axes).against(&plain);
+    println!("  with two taps: distance {:.4}, variance {:+.1} %", two.distance, 100.0 * two.variance);
+    let [plain, texels] = [0, 1].map(|which| photo.drawn(which, 0, &axes));
+    let texels = texels.against(&plain);
+    println!("  texel by texel: along axes {:.4}, in 8 bits {:.4}", texels.along, texels.shown);
+    if is_brief {
+        return is_inside;
+    }
+    println!(
+        "  level  distance (linear)  along axes (linear)  in 8 bits (linear)   variance (linear)   mean, 255ths (linear)"
+    );
     // At the last level one texel is left, which tells no distribution.
     for level in 0..=side.ilog2() {
         let [plain, histogram, linear] = [0, 1, 2].map(|which| photo.drawn(which, level, &axes));
         let [ours, theirs] = [&histogram, &linear].map(|drawn| drawn.against(&plain));
         println!(
-            "  {level:5}  {:.4} ({:.4})    {:.4} ({:.4})     {:+5.1} % ({:+5.1} %)   {:.2} ({:.2})",
+            "  {level:5}  {:.4} ({:.4})    {:.4} ({:.4})     {:.4} ({:.4})     {:+5.1} % ({:+5.1} %)   {:.2} ({:.2})",
             ours.distance,
             theirs.distance,
             ours.along,
             theirs.along,
+            ours.shown,
+            theirs.shown,
             100.0 * ours.variance,
             100.0 * theirs.variance,
             255.0 * ours.mean,
@@ -199,6 +224,8 @@ fn returned(picture: &image::RgbImage, gaussian: &[u8], inverse: &[f32]) -> f64 
 struct Drawn {
     /// Red, green, blue, and then along each axis.
     counts: Vec<Vec<u64>>,
+    /// Along each axis, of pictures of 8 bits.
+    shown: Vec<Vec<u64>>,
     sums: [f64; 3],
     squares: [f64; 3],
     count: f64,
@@ -208,6 +235,8 @@ struct Drawn {
 struct Difference {
     distance: f64,
     along: f64,
+    /// The same of pictures of 8 bits.
+    shown: f64,
     variance: f64,
     mean: f64,
 }
@@ -237,8 +266,10 @@ impl Photo {
         let pieces = if level < 2 { REPEATS / PIECE } else { 1 };
         let repeats = REPEATS / pieces;
         let size = (self.side * repeats) >> level;
+        let encoder = SrgbEncoder::new();
         let mut drawn = Drawn {
             counts: vec![vec![0; BINS]; 3 + axes.len()],
+            shown: vec![vec![0; BINS]; axes.len()],
             sums: [0.0; 3],
             squares: [0.0; 3],
             count: 0.0,
@@ -250,16 +281,22 @@ impl Photo {
             let region = [x, y, x + f64::from(repeats), y + f64::from(repeats)];
             let request = Request { region, ..Request::new([size; 2]) };
             let picture = scene.render(&request, &|_| {}).expect("it is drawn");
-            picture.pixels.iter().for_each(|pixel| drawn.add(numbers(*pixel, self.encoding), axes));
+            for pixel in &picture.pixels {
+                drawn.add(numbers(*pixel, self.encoding), axes);
+                drawn.count_shown(shown(*pixel, self.encoding, &encoder), axes);
+            }
         }
         drawn
     }
 }
 
+/// From -4 to 4, which slopes may have.
+fn bin(x: f64) -> usize {
+    ((x + 4.0) / 8.0 * BINS as f64).clamp(0.0, BINS as f64 - 1.0) as usize
+}
+
 impl Drawn {
     fn add(&mut self, numbers: [f64; 3], axes: &[[f64; 3]]) {
-        // From -4 to 4, which slopes may have.
-        let bin = |x: f64| ((x + 4.0) / 8.0 * BINS as f64).clamp(0.0, BINS as f64 - 1.0) as usize;
         for (k, x) in numbers.into_iter().enumerate() {
             self.sums[k] += x;
             self.squares[k] += x * x;
@@ -271,6 +308,12 @@ impl Drawn {
         self.count += 1.0;
     }
 
+    fn count_shown(&mut self, numbers: [f64; 3], axes: &[[f64; 3]]) {
+        for (axis, counts) in axes.iter().zip(&mut self.shown) {
+            counts[bin(axis.iter().zip(numbers).map(|(a, x)| a * x).sum())] += 1;
+        }
+    }
+
     fn mean(&self, k: usize) -> f64 {
         self.sums[k] / self.count
     }
@@ -280,21 +323,24 @@ impl Drawn {
     }
 
     fn against(&self, plain: &Drawn) -> Difference {
-        let distance = |of: usize| {
+        let apart = |these: &[u64], those: &[u64]| {
             let (mut one, mut other, mut most) = (0.0, 0.0, 0.0_f64);
-            for (a, b) in self.counts[of].iter().zip(&plain.counts[of]) {
+            for (a, b) in these.iter().zip(those) {
                 one += *a as f64 / self.count;
                 other += *b as f64 / plain.count;
                 most = most.max(f64::abs(one - other));
             }
             most
         };
+        let distance = |of: usize| apart(&self.counts[of], &plain.counts[of]);
+        let shown = self.shown.iter().zip(&plain.shown).map(|(these, those)| apart(these, those));
         let all = self.counts.len();
         let more = (0..3).filter(|k| plain.variance(*k) > 1e-9);
         let more = more.map(|k| self.variance(k) / plain.variance(k) - 1.0);
         Difference {
             distance: (0..3).map(distance).fold(0.0, f64::max),
             along: (3..all).map(distance).fold(0.0, f64::max),
+            shown: shown.fold(0.0, f64::max),
             variance: more.fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most }),
             mean: (0..3).map(|k| (self.mean(k) - plain.mean(k)).abs()).fold(0.0, f64::max),
         }
