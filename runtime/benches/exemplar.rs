@@ -21,6 +21,8 @@ const WANTED: Wanted = Wanted {
     compress: Compression::None,
 };
 const ROUNDS: usize = 5;
+/// Says that memory is to be told.
+const MEMORY: &str = "TEXGRAPH_TELL_MEMORY";
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
@@ -29,8 +31,18 @@ fn main() {
         Some(path) if path.parse::<u32>().is_err() => arguments.iter().map(|path| read(path)).collect(),
         _ => vec![(format!("clouds of colour, {side}²"), [side, side], clouds(side))],
     };
+    if std::env::var_os(MEMORY).is_some() {
+        return pictures.iter().for_each(|(name, size, pixels)| memory(name, *size, pixels));
+    }
+    // What is freed is held for a while, unless the allocator is told not to when it starts.
+    for (what, delay) in [("in use", "0"), ("with what the allocator holds", "10")] {
+        let again = std::env::current_exe().and_then(|program| {
+            let mut process = std::process::Command::new(program);
+            process.args(&arguments).env("MIMALLOC_PURGE_DELAY", delay).env(MEMORY, what).status()
+        });
+        again.expect("it runs again");
+    }
     for (name, size, pixels) in pictures {
-        memory(&name, size, &pixels);
         compare(&name, size, &pixels);
     }
 }
@@ -57,7 +69,10 @@ fn memory(name: &str, size: [u32; 2], pixels: &[u8]) {
     let most = (peak.saturating_sub(before) * 1024) as f64 / input + 1.0;
     let left: usize = made.iter().map(|made| made.bytes.len()).sum();
     let left = left as f64 / input;
-    println!("{name}: at most {most:.2} times the picture's bytes, with it and with {left:.2} that are made");
+    let what = std::env::var(MEMORY).unwrap_or_default();
+    println!(
+        "{name}: {most:.2} times the picture's bytes at most, {what}; with it and {left:.2} that are made"
+    );
 }
 
 fn compare(name: &str, size: [u32; 2], pixels: &[u8]) {

@@ -33,7 +33,9 @@ fn main() {
         sized(&photo, side).save(folder.path().join("photo.png")).expect("it is written");
         for format in FORMATS {
             let tell = |text: &str| loaded(folder.path(), &text.replace("SIDE", &format!("{side}")));
-            let repeated = tell("let i = image(\"photo.png\")\ntexture t(uv: vec2) -> (color: color) { color = i.sample(uv * 1024.0 / SIDE.0) }\n");
+            let repeated = tell(
+                "let i = image(\"photo.png\")\ntexture t(uv: vec2) -> (color: color) { color = i.sample(uv * 1024.0 / SIDE.0) }\n",
+            );
             let ours = tell(&format!(
                 "let e = exemplar(\"photo.png\", wrap: repeat, compress: {format})\ntexture t(uv: vec2) -> (color: color) {{ color = e.stochastic(uv * 1024.0 / SIDE.0) }}\n"
             ));

@@ -159,25 +159,21 @@ fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str, is_bri
     println!("  with two taps: distance {:.4}, variance {:+.1} %", two.distance, 100.0 * two.variance);
     let [plain, texels] = [0, 1].map(|which| photo.drawn(which, 0, &axes));
     let texels = texels.against(&plain);
-    println!("  texel by texel: along axes {:.4}, in 8 bits {:.4}", texels.along, texels.shown);
+    println!("  texel by texel: along axes {:.4}, in 8 bits along each {:.4?}", texels.along, texels.shown);
     if is_brief {
         return is_inside;
     }
-    println!(
-        "  level  distance (linear)  along axes (linear)  in 8 bits (linear)   variance (linear)   mean, 255ths (linear)"
-    );
+    println!("  level  distance (linear)  along axes (linear)   variance (linear)   mean, 255ths (linear)");
     // At the last level one texel is left, which tells no distribution.
     for level in 0..=side.ilog2() {
         let [plain, histogram, linear] = [0, 1, 2].map(|which| photo.drawn(which, level, &axes));
         let [ours, theirs] = [&histogram, &linear].map(|drawn| drawn.against(&plain));
         println!(
-            "  {level:5}  {:.4} ({:.4})    {:.4} ({:.4})     {:.4} ({:.4})     {:+5.1} % ({:+5.1} %)   {:.2} ({:.2})",
+            "  {level:5}  {:.4} ({:.4})    {:.4} ({:.4})     {:+5.1} % ({:+5.1} %)   {:.2} ({:.2})",
             ours.distance,
             theirs.distance,
             ours.along,
             theirs.along,
-            ours.shown,
-            theirs.shown,
             100.0 * ours.variance,
             100.0 * theirs.variance,
             255.0 * ours.mean,
@@ -235,8 +231,8 @@ struct Drawn {
 struct Difference {
     distance: f64,
     along: f64,
-    /// The same of pictures of 8 bits.
-    shown: f64,
+    /// The same of pictures of 8 bits, along each.
+    shown: Vec<f64>,
     variance: f64,
     mean: f64,
 }
@@ -340,7 +336,7 @@ impl Drawn {
         Difference {
             distance: (0..3).map(distance).fold(0.0, f64::max),
             along: (3..all).map(distance).fold(0.0, f64::max),
-            shown: shown.fold(0.0, f64::max),
+            shown: shown.collect(),
             variance: more.fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most }),
             mean: (0..3).map(|k| (self.mean(k) - plain.mean(k)).abs()).fold(0.0, f64::max),
         }

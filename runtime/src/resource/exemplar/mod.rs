@@ -68,7 +68,7 @@ pub fn make(
 pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
     let light = Light::new(picture, wanted.encoding, wanted.channels as usize);
     let axes = Axes::of(&light);
-    let ranks = Ranks::of(&light, &axes, wanted.compress != Compression::None);
+    let mut ranks = Ranks::of(&light, &axes, wanted.compress != Compression::None);
     let inside = match wanted.borders {
         Borders::Auto => borders::differ(&light),
         Borders::Repeat => false,

@@ -9,14 +9,17 @@
 use super::axes::Axes;
 use super::gauss::share_below;
 use super::light::{BATCH, Light, NONE};
-use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use rayon::slice::{ParallelSlice, ParallelSliceMut};
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
 
 /// How many bins a channel has.
 const BINS: usize = 1 << 16;
 
 /// Texels that one thread looks at before it takes more: whole batches.
 const BAND: usize = 1024 * BATCH;
+
+/// Texels whose order is looked for at a time.
+const PIECE: usize = BAND / 16;
 
 /// A channel that spreads no further is flat: half the least step of 8-bit sRGB.
 const FLAT: f64 = 1.5e-4;
@@ -100,8 +103,8 @@ impl Ranks {
     }
 
     /// Writes the Gaussian picture: red, green and blue are the channels, 0 where there are less, alpha
-    /// is the picture's.
-    pub fn write(&self, light: &Light<'_>, axes: &Axes, bytes: &mut [u8]) {
+    /// is the picture's. The texels' bins are forgotten: they take twice the picture's bytes.
+    pub fn write(&mut self, light: &Light<'_>, axes: &Axes, bytes: &mut [u8]) {
         bytes.par_chunks_mut(BAND * 4).enumerate().for_each(|(band, bytes)| {
             let mut numbers = NONE;
             let mut alpha = [0; BATCH];
@@ -126,6 +129,7 @@ impl Ranks {
                 texels.iter_mut().zip(alpha).for_each(|(texel, alpha)| texel[3] = alpha);
             }
         });
+        self.channels.iter_mut().for_each(|channel| channel.bins = Vec::new());
     }
 
     /// Whether a channel has one number everywhere.
@@ -314,31 +318,56 @@ impl Channel {
                 passed += within;
             }
         }
-        let keys = self.keys(light, axes, axis, changes.len());
-        let steps = changes.iter().zip(keys).map(|((code, first, ranks), mut keys)| {
-            let keys = ranks.iter().map(|rank| *keys.select_nth_unstable((rank - first) as usize).1);
-            Steps { first: *code, keys: keys.collect() }
-        });
-        self.steps = steps.collect();
+        let sizes = self.codes.iter().zip(self.before.windows(2));
+        let sizes = sizes.filter(|(code, _)| **code >= STEPPED).map(|(_, before)| before[1] - before[0]);
+        let sizes: Vec<u32> = sizes.collect();
+        // Keys take eight bytes: of half the texels at a time.
+        while self.steps.len() < changes.len() {
+            let begin = self.steps.len();
+            let within = sizes[begin..].iter().scan(0, |sum, size| {
+                *sum += *size as usize;
+                Some(*sum)
+            });
+            let count = within.take_while(|sum| *sum <= texels / 2).count().max(1);
+            let keys = self.keys(light, axes, axis, begin, &sizes[begin..begin + count]);
+            self.steps.extend(changes[begin..].iter().zip(keys).map(|((code, first, ranks), mut keys)| {
+                let keys = ranks.iter().map(|rank| *keys.select_nth_unstable((rank - first) as usize).1);
+                Steps { first: *code, keys: keys.collect() }
+            }));
+        }
     }
 
-    /// The keys of the texels in each of so many bins that hold several stored numbers.
-    fn keys(&self, light: &Light<'_>, axes: &Axes, axis: usize, count: usize) -> Vec<Vec<u64>> {
-        let bands = self.bins.par_chunks(BAND).enumerate().map(|(band, bins)| {
+    /// The keys of the texels in bins that hold several stored numbers: in those from a place among them
+    /// on, of these numbers of texels.
+    fn keys(
+        &self,
+        light: &Light<'_>,
+        axes: &Axes,
+        axis: usize,
+        begin: usize,
+        sizes: &[u32],
+    ) -> Vec<Vec<u64>> {
+        let mut keys: Vec<Vec<u64>> = sizes.iter().map(|size| Vec::with_capacity(*size as usize)).collect();
+        let first = STEPPED + begin as u16;
+        let codes = first..first + sizes.len() as u16;
+        let found = |(piece, bins): (usize, &[u16])| {
             let mut numbers = NONE;
             let mut found = Vec::new();
-            for (i, bin) in (band * BAND..).zip(bins) {
+            for (i, bin) in (piece * PIECE..).zip(bins) {
                 let code = self.codes[usize::from(*bin)];
-                if code >= STEPPED {
+                if codes.contains(&code) {
                     light.read(i, 1, &mut numbers);
-                    found.push((code - STEPPED, self.scale.key(axes.place(axis, &numbers, 0), i)));
+                    found.push((code - first, self.scale.key(axes.place(axis, &numbers, 0), i)));
                 }
             }
             found
-        });
-        let bands: Vec<Vec<(u16, u64)>> = bands.collect();
-        let mut keys = vec![Vec::new(); count];
-        bands.into_iter().flatten().for_each(|(bin, key)| keys[usize::from(bin)].push(key));
+        };
+        // A few at a time: all that is found would take several times the picture's bytes.
+        let pieces: Vec<(usize, &[u16])> = self.bins.chunks(PIECE).enumerate().collect();
+        for pieces in pieces.chunks(8 * rayon::current_num_threads()) {
+            let found: Vec<Vec<(u16, u64)>> = pieces.par_iter().map(|piece| found(*piece)).collect();
+            found.into_iter().flatten().for_each(|(bin, key)| keys[usize::from(bin)].push(key));
+        }
         keys
     }
 }
