@@ -15,6 +15,8 @@ mod format;
 mod key;
 mod ktx2;
 
+pub use key::MAKING;
+
 use crate::bake;
 use crate::project::Project;
 use crate::render::RenderError;
@@ -37,7 +39,7 @@ pub struct Cache {
     files: BTreeMap<String, String>,
     /// What was made or read here, by key.
     known: BTreeMap<String, Loaded>,
-    /// The keys of what was made, and for what took a time of its own, how long that was.
+    /// The keys of what was made and not packed yet; for what took a time of its own, how long that was.
     made: BTreeMap<String, Option<Duration>>,
 }
 
@@ -140,7 +142,7 @@ impl Cache {
     }
 
     /// The files of all tables, whose names and offsets the manifest then has.
-    pub fn pack(&self, manifest: &mut Manifest, tables: &Tables) -> Vec<Packed> {
+    pub fn pack(&mut self, manifest: &mut Manifest, tables: &Tables) -> Vec<Packed> {
         let mut packed = Vec::new();
         for (index, resource) in manifest.resources.iter_mut().enumerate() {
             for texture in &mut resource.textures {
@@ -154,8 +156,9 @@ impl Cache {
                     let (Some(table), Some(bytes)) = (table, bytes) else { continue };
                     let Some((placed, bytes)) = ktx2::write(view, table, bytes) else { continue };
                     *table = Table { file: Some(name.clone()), ..placed };
-                    let made = table.key.as_ref().and_then(|key| self.made.get(key));
-                    let (is_made, time) = (made.is_some(), made.copied().flatten());
+                    // A second file of the same table is a copy.
+                    let made = table.key.as_ref().and_then(|key| self.made.remove(key));
+                    let (is_made, time) = (made.is_some(), made.flatten());
                     packed.push(Packed { name, bytes: bytes.into(), is_made, time });
                 }
             }
