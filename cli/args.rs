@@ -103,7 +103,7 @@ pub struct Args {
 pub enum Command {
     /// Report all errors of .tex files
     Check(Check),
-    /// Write shaders, their manifests and the bytes of their textures
+    /// Write shaders, their manifests and their textures; again, what has changed
     Build(Build),
     /// Render a texture to a PNG picture
     Render(Render),

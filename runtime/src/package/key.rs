@@ -4,11 +4,10 @@
 //! under the same key is the same, byte for byte. Indices of other resources are no part of it: what
 //! they stand for is, so that a resource more or less in the program changes no key.
 
-use crate::pass;
 use crate::project::Project;
 use std::collections::BTreeMap;
 use texgraph_compiler::Program;
-use texgraph_compiler::manifest::{Format, Manifest, Recipe, Resource, Texture};
+use texgraph_compiler::manifest::{Format, Recipe, Resource, Texture};
 
 /// How tables are made, as a number. Raise it with every change of the bytes that some recipe gives
 /// (the test `making` finds most): tables made otherwise are then made
@@ -86,33 +85,33 @@ pub fn of_blocks(plain: &str, format: Format) -> String {
 /// Enters the keys of the bakes that depend on no param into the manifest: of the shader, of the size,
 /// and of all that the bake reads. What it reads must have its key.
 pub fn enter_bakes(program: &mut Program) {
-    let bakes = pass::all(program).filter_map(|pass| Some((pass.described.bake?, pass)));
-    let bakes = bakes.filter(|(_, pass)| pass.described.params.is_empty());
-    let shaders =
-        bakes.map(|(bake, pass)| (bake as usize, pass.described.reads.clone(), unbound(&pass.code.wgsl)));
-    let shaders: Vec<(usize, Vec<(u32, String)>, String)> = shaders.collect();
-    for (bake, reads, shader) in shaders {
-        let key = of_bake(&program.manifest, bake, &reads, &shader);
-        let texture =
-            program.manifest.resources.get_mut(bake).and_then(|resource| resource.textures.first_mut());
+    for number in 0..program.passes.len() {
+        let Some((bake, key)) = of_bake(program, number) else { continue };
+        let resource = program.manifest.resources.get_mut(bake);
+        let texture = resource.and_then(|resource| resource.textures.first_mut());
         if let Some(table) = texture.and_then(|texture| texture.table.as_mut()) {
-            table.key = key;
+            table.key = Some(key);
         }
     }
 }
 
-/// None where one of the textures it reads has no key: another bake, that a param changes.
-fn of_bake(manifest: &Manifest, bake: usize, reads: &[(u32, String)], shader: &str) -> Option<String> {
+/// The resource that a pass fills, and its key. None where a param changes it, or one of the textures it
+/// reads has no key: another bake, that a param changes.
+fn of_bake(program: &Program, number: usize) -> Option<(usize, String)> {
+    let Program { passes, manifest } = program;
+    let described = manifest.passes.get(number).filter(|pass| pass.params.is_empty())?;
+    let bake = described.bake? as usize;
     let mut hasher = Hasher::new("bake");
     hasher.add(ron::to_string(&manifest.resources.get(bake)?.recipe).ok()?);
-    hasher.add(shader);
-    for (resource, field) in reads {
+    hasher.add(unbound(&passes.get(number)?.wgsl));
+    for (resource, field) in &described.reads {
         let resource = manifest.resources.get(*resource as usize)?;
         let texture = resource.textures.iter().find(|texture| texture.field == *field)?;
         hasher.add(plain_key(texture)?);
-        hasher.add(ron::to_string(&texture.sampler.as_ref().map(|s| (s.wrap, s.filter, s.anisotropy))).ok()?);
+        let sampler = texture.sampler.as_ref().map(|s| (s.wrap, s.filter, s.anisotropy));
+        hasher.add(ron::to_string(&sampler).ok()?);
     }
-    Some(hasher.finish())
+    Some((bake, hasher.finish()))
 }
 
 /// The key of what the CPU reads of a texture.

@@ -241,7 +241,7 @@ mod tests {
     ) -> (Table, Vec<u8>) {
         let table = Table { key: Some(KEY.into()), ..Table::with_levels(format, size, layers, levels) };
         let table = laid_out(view, &table).expect("it has few levels");
-        let bytes = (0..table.bytes()).map(|at| (at ^ at >> 8 ^ at * 7) as u8).collect();
+        let bytes = (0..table.bytes()).map(|at| (at ^ (at >> 8) ^ (at * 7)) as u8).collect();
         (table, bytes)
     }
 
