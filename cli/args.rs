@@ -28,10 +28,12 @@ const BUILD: &str = "\
 Example:
   texgraph build tiling.tex -o shaders
 writes, for the file's one texture `tiling`:
-  shaders/tiling.wgsl              the shader
-  shaders/tiling.ron               what a host must bind and may set
-  shaders/tiling.grass.layers.bin  the texels of `grass`, all levels
+  shaders/tiling.wgsl               the shader
+  shaders/tiling.ron                what a host must bind and may set
+  shaders/tiling.grass.layers.ktx2  the texels of `grass`, all levels
 All files are made before the first is written; after an error the old ones are as they were.
+Building again makes what has changed, and says what that was; a table whose recipe and pictures
+are the same is taken from the folder, and files that would hold the same are not touched.
   texgraph build tiling.tex -o shaders --form library --profile bevy
 writes a function to import into a material of Bevy, its bindings in group 3 from 100 on.";
 
@@ -101,7 +103,7 @@ pub struct Args {
 pub enum Command {
     /// Report all errors of .tex files
     Check(Check),
-    /// Write shaders, their manifests and the bytes of their textures
+    /// Write shaders, their manifests and their textures; again, what has changed
     Build(Build),
     /// Render a texture to a PNG picture
     Render(Render),
@@ -209,6 +211,9 @@ pub struct Build {
     /// The one texture to build; all of the file when not given
     #[arg(long, value_name = "NAME")]
     pub texture: Option<String>,
+    /// Do not say what was made
+    #[arg(short, long)]
+    pub quiet: bool,
     /// How the shader is wrapped
     #[arg(long, value_enum, default_value_t, value_name = "FORM")]
     pub form: Form,

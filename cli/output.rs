@@ -23,6 +23,12 @@ pub fn write<B: AsRef<[u8]>>(files: &[(PathBuf, B)]) -> Result<(), Problem> {
     Ok(())
 }
 
+/// Whether a file holds exactly these bytes, and so need not be written.
+pub fn holds(path: &Path, bytes: &[u8]) -> bool {
+    let is_as_long = fs::metadata(path).is_ok_and(|kind| kind.is_file() && kind.len() == bytes.len() as u64);
+    is_as_long && fs::read(path).is_ok_and(|held| held == bytes)
+}
+
 /// Finds out early whether a picture can be written: it is a PNG, and there is a place for it.
 ///
 /// # Errors

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use texgraph_compiler::diagram::Diagram;
 use texgraph_compiler::module::{Loader, Source, Sources};
 use texgraph_compiler::{Checked, Compiled, Failure, Library, Options, Profile, profile};
+use texgraph_runtime::package::Cache;
 use texgraph_runtime::project::Project;
 use texgraph_runtime::resource::{self, Tables};
 
@@ -98,6 +99,16 @@ impl<'a> Program<'a> {
     /// All that is wrong with any of the files.
     pub fn load(&self, compiled: &mut Compiled) -> Result<Tables, Failure> {
         resource::load(&mut compiled.program, &self.project)
+            .map_err(|diagnostics| Failure { sources: compiled.sources.clone(), diagnostics })
+    }
+
+    /// The same, with what a cache knows taken from there.
+    ///
+    /// # Errors
+    /// All that is wrong with any of the files that it does not know.
+    pub fn load_new(&self, compiled: &mut Compiled, cache: &mut Cache) -> Result<Tables, Failure> {
+        cache
+            .load(&mut compiled.program, &self.project)
             .map_err(|diagnostics| Failure { sources: compiled.sources.clone(), diagnostics })
     }
 }

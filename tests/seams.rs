@@ -173,7 +173,7 @@ fn flatten((program, tables): &mut Loaded) {
             let mut bytes = Vec::new();
             for (level, described) in (first..).zip(&table.levels) {
                 let grey = half_float(level as f32 / LEVELS);
-                bytes.extend(grey.to_le_bytes().repeat(described.bytes() as usize / 2));
+                bytes.extend(grey.to_le_bytes().repeat(described.bytes(table.format) as usize / 2));
             }
             texture.table = Some(table);
             tables.insert(index, &texture.field, bytes);

@@ -95,7 +95,7 @@ fn checked_table<'a>(resource: &'a Resource, texture: &'a Texture) -> Result<&'a
     }
     let layout = Table::mipmapped(*format, *size, 1);
     let is_right = |table: &&Table| {
-        let Table { file: _, format, width, height, layers, levels } = table;
+        let Table { file: _, key: _, format, width, height, layers, levels } = table;
         (format, width, height, layers, levels)
             == (&layout.format, &layout.width, &layout.height, &layout.layers, &layout.levels)
     };

@@ -7,7 +7,8 @@
 //!
 //! [`project::Project`] says which files a program may read, [`resource::load`] makes the bytes of
 //! its textures, [`render::render`] makes a [`picture::Picture`] of one of its outputs, and
-//! [`render::Scene`] many of them. What a program [`bake`]s is drawn on the way. The GPU is the
+//! [`render::Scene`] many of them. What a program [`bake`]s is drawn on the way.
+//! [`package::Cache`] does the same for who writes files, and makes nothing twice. The GPU is the
 //! feature `gpu`; without it everything else stays.
 
 pub mod animation;
@@ -16,6 +17,7 @@ pub mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod inspect;
+pub mod package;
 pub mod picture;
 pub mod project;
 pub mod render;

@@ -6,10 +6,12 @@
 //! `--allow-outside`. Only regular files are opened: a pipe would never end.
 
 use crate::nearest::nearest;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use texgraph_compiler::module::Loader;
 
 /// The largest resource file that is read, in bytes.
@@ -25,6 +27,8 @@ pub struct Project {
     folder: PathBuf,
     main: String,
     allow_outside: bool,
+    /// Files that were read before, with their bytes.
+    held: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl Project {
@@ -35,7 +39,14 @@ impl Project {
             folder: parent.unwrap_or(Path::new(".")).to_path_buf(),
             main: main.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default(),
             allow_outside,
+            held: BTreeMap::new(),
         }
+    }
+
+    /// The same project, in which these resource files, by their paths, hold these bytes whatever becomes
+    /// of them.
+    pub(crate) fn holding(&self, files: BTreeMap<String, Arc<[u8]>>) -> Project {
+        Project { held: files, ..self.clone() }
     }
 
     /// The main file's path as the program sees it: its name.
@@ -54,6 +65,9 @@ impl Project {
     /// The path leaves the folder, or names nothing, no regular file, one that can't be opened, or
     /// one of more than [`MAX_FILE`] bytes.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, FileError> {
+        if let Some(bytes) = self.held.get(path) {
+            return Ok(bytes.to_vec());
+        }
         let fail = |problem| FileError { path: path.to_string(), problem };
         let file = self.open(path).map_err(fail)?;
         let bytes = read_at_most(file, MAX_FILE + 1).map_err(fail)?;

@@ -84,7 +84,10 @@ fn levels() -> (Table, Vec<u8>) {
         let grey = half::f16::from_f32(f32::from(l) / 8.0).to_le_bytes();
         bytes.extend(grey.repeat(4 * (side * side) as usize));
     }
-    (Table { file: None, format: Format::Rgba16Float, width: 8, height: 8, layers: 1, levels }, bytes)
+    (
+        Table { file: None, key: None, format: Format::Rgba16Float, width: 8, height: 8, layers: 1, levels },
+        bytes,
+    )
 }
 
 #[test]

@@ -106,6 +106,11 @@ impl Run {
         self.code == 0 && self.out.is_empty() && self.err.is_empty()
     }
 
+    /// It ended well and said what it did on standard error, where nothing panicked.
+    pub fn is_done(&self) -> bool {
+        self.code == 0 && self.out.is_empty() && !self.err.is_empty() && !self.err.contains("panicked")
+    }
+
     /// Asserts the exit code and a part of what stands on standard error, where nothing panicked.
     #[track_caller]
     pub fn fails(&self, code: i32, part: &str) {

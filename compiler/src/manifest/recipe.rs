@@ -203,6 +203,41 @@ impl Recipe {
     /// The largest permutation.
     pub const MAX_PERMUTATION: u32 = 65_536;
 
+    /// The files that it reads.
+    pub fn files(&self) -> Vec<&str> {
+        match self {
+            Recipe::Image { path, .. }
+            | Recipe::PixelMap { path, .. }
+            | Recipe::Positions { path, .. }
+            | Recipe::Exemplar { path, .. }
+            | Recipe::Indices { source: IndicesSource::Path(path), .. }
+            | Recipe::Line { source: IndicesSource::Path(path), .. }
+            | Recipe::Stack { source: IndicesSource::Path(path), .. } => vec![path],
+            Recipe::Patterns { paths, .. } | Recipe::Strips { paths, .. } | Recipe::Volumes { paths, .. } => {
+                paths.iter().map(String::as_str).collect()
+            }
+            Recipe::Indices { source: IndicesSource::Rows(_), .. }
+            | Recipe::Line { source: IndicesSource::Rows(_), .. }
+            | Recipe::Stack { source: IndicesSource::Rows(_), .. }
+            | Recipe::Permutation { .. }
+            | Recipe::Probability { .. }
+            | Recipe::Materials { .. }
+            | Recipe::Tables { .. }
+            | Recipe::Ramp { .. }
+            | Recipe::Bake { .. } => Vec::new(),
+        }
+    }
+
+    /// The resources that it is made of, by index.
+    pub fn resources(&self) -> &[u32] {
+        match self {
+            Recipe::Materials { items, .. } => items,
+            Recipe::Positions { patterns, .. } => std::slice::from_ref(patterns),
+            Recipe::Tables { rows } => rows,
+            _ => &[],
+        }
+    }
+
     /// How many rows of the shared tables it takes, where it is one of them.
     pub fn rows(&self) -> u32 {
         match self {

@@ -6,8 +6,13 @@ use serde::{Deserialize, Serialize};
 /// The bytes of a texture: every level, every layer (or slice), row by row, without padding.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Table {
-    /// The file with the bytes, beside the manifest; none when they were not written.
+    /// The KTX2 file with the bytes, beside the manifest; none when they were not written. The levels'
+    /// offsets are then those in the file.
     pub file: Option<String>,
+    /// What the bytes were made of, hashed: the recipe and the content of all files that it reads. The
+    /// file holds the same as `texgraph.key`. None when the bytes were not made to be kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
     /// Its texels.
     pub format: Format,
     /// Width of level 0 in texels.
@@ -40,7 +45,7 @@ impl Table {
             level
         });
         let levels = levels.collect();
-        Table { file: None, format, width, height, layers, levels }
+        Table { file: None, key: None, format, width, height, layers, levels }
     }
 
     /// Bytes of all levels.
@@ -52,7 +57,7 @@ impl Table {
 /// One level of a table. All its layers follow one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Level {
-    /// Where it begins, in bytes.
+    /// Where it begins, in bytes; in the table's file, if there is one.
     pub offset: u64,
     /// Width in texels.
     pub width: u32,

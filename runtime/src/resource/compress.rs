@@ -3,11 +3,12 @@
 //! Every texture is made plain. [`compress`] adds compressed forms to those whose recipes ask for one,
 //! and each renderer takes the form that it can read: the shader is the same.
 
-use super::Tables;
+use super::{Loaded, Tables};
 use block_compression::encode::compress_rgba8;
 use block_compression::{BC7Settings, CompressionVariant};
 use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
+use std::sync::Arc;
 use texgraph_compiler::manifest::{Format, Level, Manifest, Recipe, Table};
 
 /// Texels across and down a block.
@@ -17,14 +18,29 @@ const BLOCK: usize = 4;
 /// [`Tables::get`] are then theirs, `plain` and [`Tables::plain`] those that were made. What has one is
 /// left as it is.
 pub fn compress(manifest: &mut Manifest, tables: &mut Tables) {
+    compress_with(manifest, tables, |plain, format| {
+        let (table, bytes) = blocks(&plain.table, &plain.bytes, format)?;
+        Some(Loaded { field: plain.field.clone(), table, bytes: bytes.into() })
+    });
+}
+
+/// As [`compress`], the compressed form of a plain one given by a function.
+pub(crate) fn compress_with(
+    manifest: &mut Manifest,
+    tables: &mut Tables,
+    mut compressed: impl FnMut(&Loaded, Format) -> Option<Loaded>,
+) {
     for (index, resource) in manifest.resources.iter_mut().enumerate() {
         let Some((field, format)) = wanted(&resource.recipe) else { continue };
         let texture = resource.textures.iter_mut().find(|texture| texture.field == field);
         let Some(texture) = texture.filter(|texture| texture.plain.is_none()) else { continue };
         let (Some(table), Some(entry)) = (&texture.table, tables.entry(index, field)) else { continue };
-        let Some((compressed, bytes)) = blocks(table, &entry.bytes, format) else { continue };
-        entry.plain = Some(std::mem::replace(&mut entry.bytes, bytes.into()));
-        texture.plain = texture.table.replace(compressed);
+        let (table, bytes) = (table.clone(), Arc::clone(&entry.bytes));
+        let Some(made) = compressed(&Loaded { field: field.to_owned(), table, bytes }, format) else {
+            continue;
+        };
+        entry.plain = Some(std::mem::replace(&mut entry.bytes, made.bytes));
+        texture.plain = texture.table.replace(made.table);
     }
 }
 
@@ -37,7 +53,7 @@ fn wanted(recipe: &Recipe) -> Option<(&'static str, Format)> {
 }
 
 /// A table of one layer of 8-bit texels in blocks; none where it is anything else, or cut short.
-fn blocks(table: &Table, bytes: &[u8], format: Format) -> Option<(Table, Vec<u8>)> {
+pub(crate) fn blocks(table: &Table, bytes: &[u8], format: Format) -> Option<(Table, Vec<u8>)> {
     if table.format != Format::Rgba8Unorm || table.layers != 1 {
         return None;
     }

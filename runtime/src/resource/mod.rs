@@ -24,13 +24,15 @@ pub(crate) mod table;
 mod tables;
 
 pub use compress::compress;
+pub(crate) use compress::{blocks, compress_with};
 pub use decode::Decoded;
 pub use encoding::{SrgbEncoder, srgb_to_linear};
+pub(crate) use table::Loaded;
 pub(crate) use table::MAX_LAYERS;
 pub use table::Made;
 
 use crate::project::Project;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use shape::Shape;
 use std::sync::Arc;
 use texgraph_compiler::Program;
@@ -102,33 +104,38 @@ impl Tables {
 /// # Errors
 /// Everything that is wrong with any resource, in the order of the resources.
 pub fn load(program: &mut Program, project: &Project) -> Result<Tables, Vec<Diagnostic>> {
-    let graph = &program.texture().graph;
-    let made: Vec<Result<Vec<Made>, Vec<Diagnostic>>> = program
-        .manifest
-        .resources
-        .par_iter()
-        .enumerate()
-        .map(|(index, resource)| {
-            if resource.textures.is_empty() {
-                return Ok(Vec::new());
-            }
-            let place = graph.resources.get(index).map(|resource| resource.place).unwrap_or_default();
-            make(project, place, &resource.recipe, &program.manifest.resources)
-        })
-        .collect();
+    let loaded = for_each(program, |place, resource, known| {
+        let made = make(project, place, &resource.recipe, known)?;
+        Ok(made.into_iter().map(Loaded::from).collect())
+    })?;
     let mut tables = Tables::default();
-    let mut errors = Vec::new();
-    for (index, made) in made.into_iter().enumerate() {
-        match made {
-            Ok(made) => enter(index, made, &mut program.manifest, &mut tables),
-            Err(found) => errors.extend(found),
-        }
+    for (index, loaded) in loaded.into_iter().enumerate() {
+        enter(index, loaded, &mut program.manifest, &mut tables);
     }
-    if errors.is_empty() { Ok(tables) } else { Err(errors) }
+    Ok(tables)
+}
+
+/// What a function gives for each resource that the program reads, in parallel, and for the others
+/// nothing; or all errors. The function gets the place of the constructor call, the resource and all
+/// resources.
+pub(crate) fn for_each<T: Default + Send>(
+    program: &Program,
+    each: impl Fn(Place, &Resource, &[Resource]) -> Result<T, Vec<Diagnostic>> + Send + Sync,
+) -> Result<Vec<T>, Vec<Diagnostic>> {
+    let graph = &program.texture().graph;
+    let known = &program.manifest.resources;
+    let numbered: Vec<(usize, &Resource)> = known.iter().enumerate().collect();
+    all(&numbered, |(index, resource)| {
+        if resource.textures.is_empty() {
+            return Ok(T::default());
+        }
+        let place = graph.resources.get(*index).map(|resource| resource.place).unwrap_or_default();
+        each(place, resource, known)
+    })
 }
 
 /// The kinds: which file makes what a recipe asks for.
-fn make(
+pub(crate) fn make(
     project: &Project,
     place: Place,
     recipe: &Recipe,
@@ -185,10 +192,10 @@ fn all<'a, T: Sync, R: Send>(
 }
 
 /// Keeps the fields that the shader reads, in the manifest's order.
-fn enter(index: usize, mut made: Vec<Made>, manifest: &mut Manifest, tables: &mut Tables) {
+pub(crate) fn enter(index: usize, mut loaded: Vec<Loaded>, manifest: &mut Manifest, tables: &mut Tables) {
     for texture in &mut manifest.resources[index].textures {
-        if let Some(at) = made.iter().position(|made| made.field == texture.field) {
-            let Made { table, bytes, .. } = made.swap_remove(at);
+        if let Some(at) = loaded.iter().position(|loaded| loaded.field == texture.field) {
+            let Loaded { table, bytes, .. } = loaded.swap_remove(at);
             texture.table = Some(table);
             tables.insert(index, &texture.field, bytes);
         }

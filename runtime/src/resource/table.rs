@@ -1,5 +1,6 @@
 //! What is made of a resource's files, and the limits that every texture keeps.
 
+use std::sync::Arc;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
 use texgraph_compiler::manifest::{Format, Table};
 
@@ -20,6 +21,23 @@ pub struct Made {
     pub table: Table,
     /// The texels, as `table` lays them out, little endian.
     pub bytes: Vec<u8>,
+}
+
+/// A texture of a resource, to be shared.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The field of the resource's kind.
+    pub field: String,
+    /// As of [`Made`].
+    pub table: Table,
+    /// As of [`Made`].
+    pub bytes: Arc<[u8]>,
+}
+
+impl From<Made> for Loaded {
+    fn from(Made { field, table, bytes }: Made) -> Loaded {
+        Loaded { field: field.to_owned(), table, bytes: bytes.into() }
+    }
 }
 
 impl Made {

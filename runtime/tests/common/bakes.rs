@@ -27,7 +27,7 @@ pub fn baked(n: u32, size: [u32; 2], format: Format) -> Resource {
     });
     let levels = levels.collect();
     resource.textures[0].table =
-        Some(Table { file: None, format, width: size[0], height: size[1], layers: 1, levels });
+        Some(Table { file: None, key: None, format, width: size[0], height: size[1], layers: 1, levels });
     resource
 }
 
