@@ -5,10 +5,10 @@ mod common;
 use common::{folder, load_recipes, write_deep, write_picture};
 use std::fs;
 use std::path::Path;
-use texgraph_compiler::manifest::{Encoding, Format, IndicesSource, Recipe, Table};
+use texgraph_compiler::manifest::{Encoding, Format, IndicesSource, Recipe, Table, Tileable};
 
 fn image(path: &str, encoding: Encoding) -> Recipe {
-    Recipe::Image { path: path.into(), encoding }
+    Recipe::Image { path: path.into(), encoding, tileable: Tileable::None }
 }
 
 fn patterns(paths: &[&str], grid: [u32; 2]) -> Recipe {

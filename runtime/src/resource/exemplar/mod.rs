@@ -9,6 +9,7 @@
 
 mod axes;
 mod borders;
+mod crossover;
 mod gauss;
 mod inverse;
 mod light;
@@ -20,6 +21,7 @@ use super::table::{self, Made};
 use crate::project::Project;
 use axes::Axes;
 pub use borders::SEAM;
+pub use crossover::Crossover;
 pub(crate) use gauss::cumulative;
 use light::Light;
 use ranks::Ranks;
@@ -70,7 +72,7 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
     let axes = Axes::of(&light);
     let mut ranks = Ranks::of(&light, &axes, wanted.compress != Compression::None);
     let inside = match wanted.borders {
-        Borders::Auto => borders::differ(&light),
+        Borders::Auto => borders::differ(&light).contains(&true),
         Borders::Repeat => false,
         Borders::Inside => true,
     };
