@@ -292,8 +292,7 @@ pub enum Tileable {
     /// Not at all.
     #[default]
     None,
-    /// Its borders are crossed over with its middle, with the histogram kept, along each axis on which
-    /// opposite borders differ more than neighbours do.
+    /// An eighth of it at each border is crossed over with its middle, with the histogram kept.
     Blend,
 }
 

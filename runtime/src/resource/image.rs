@@ -24,10 +24,7 @@ pub fn make(
     table::check(place, path, format, file.size, 1)?;
     let picture = file.decode()?;
     let reader = Reader::new(&picture, encoding);
-    let crossover = match tileable {
-        Tileable::None => None,
-        Tileable::Blend => Crossover::new(&picture, encoding),
-    };
+    let crossover = (tileable == Tileable::Blend).then(|| Crossover::new(&picture, encoding));
     let texel = |x: u32, y: u32| {
         let blended = crossover.as_ref().and_then(|crossover| crossover.texel(x, y));
         blended.unwrap_or_else(|| reader.texel(x, y))

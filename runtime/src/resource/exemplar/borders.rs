@@ -5,9 +5,9 @@ use super::light::{BATCH, Light, MAX_CHANNELS, NONE};
 /// How many times the mean step between neighbours the step across the borders may be.
 pub const SEAM: f64 = 1.6;
 
-/// Whether opposite borders differ more than neighbours do, across and down.
-pub fn differ(light: &Light<'_>) -> [bool; 2] {
-    steps(light).map(|[inside, across]| across > SEAM * inside)
+/// Whether opposite borders differ more than neighbours do, across or down.
+pub fn differ(light: &Light<'_>) -> bool {
+    steps(light).iter().any(|[inside, across]| *across > SEAM * inside)
 }
 
 /// Along each axis the mean difference of neighbours, and that of the first texel from the last.

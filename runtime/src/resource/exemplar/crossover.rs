@@ -14,7 +14,6 @@
 //! and colours stay, where a linear blend is flat and grey.
 
 use super::axes::Axes;
-use super::borders;
 use super::gauss::Quantiles;
 use super::light::{Light, MAX_CHANNELS, NONE};
 use super::ranks::Ranks;
@@ -50,25 +49,15 @@ struct Channel {
 }
 
 impl<'a> Crossover<'a> {
-    /// Prepares to blend, along each axis on which opposite borders differ more than
-    /// [`SEAM`](super::SEAM) times as much as neighbours do. None where the picture wraps along both.
-    pub fn new(picture: &'a Decoded, encoding: Encoding) -> Option<Crossover<'a>> {
+    /// Prepares to blend. Which texels with which weight depends on the size alone, so that all pictures
+    /// of one material stay in line.
+    pub fn new(picture: &'a Decoded, encoding: Encoding) -> Crossover<'a> {
         let channels = match (encoding, picture.is_grey()) {
             (Encoding::Normal, _) => 2,
             (Encoding::Srgb | Encoding::Linear, true) => 1,
             (Encoding::Srgb | Encoding::Linear, false) => MAX_CHANNELS,
         };
         let light = Light::new(picture, encoding, channels);
-        let differ = borders::differ(&light);
-        differ.contains(&true).then(|| Crossover::along(differ, picture, encoding, light))
-    }
-
-    /// Prepares to blend along these axes, across and down.
-    fn along(axes: [bool; 2], picture: &'a Decoded, encoding: Encoding, light: Light<'a>) -> Crossover<'a> {
-        let weights = std::array::from_fn(|axis| {
-            let texels = light.size[axis];
-            (0..texels).map(|i| if axes[axis] { weight(i, texels) } else { 1.0 }).collect()
-        });
         let axes = Axes::of(&light);
         let ranks = Ranks::counted(&light, &axes);
         let quantiles = Quantiles::new(FINE);
@@ -81,7 +70,7 @@ impl<'a> Crossover<'a> {
             axes,
             ranks: ranks.without_texels(),
             channels,
-            weights,
+            weights: picture.size.map(|side| (0..side).map(|i| weight(i, side)).collect()),
         }
     }
 
@@ -158,11 +147,11 @@ fn weight(i: u32, n: u32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::super::scatter;
-    use super::{Crossover, Light};
+    use super::Crossover;
     use crate::resource::decode::Decoded;
     use crate::resource::encoding::Reader;
     use glam::{Vec3, Vec4};
-    use rayon::iter::{IntoParallelIterator, ParallelIterator};
+    use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
     use texgraph_compiler::manifest::Encoding;
 
     /// Grains of a few texels, and light that falls from one corner to the other, from 0 to this.
@@ -179,25 +168,26 @@ mod tests {
         Decoded::rgb(size, samples).expect("a picture")
     }
 
-    /// All texels of a picture, blended along these axes; by default those that need it.
-    fn blended(picture: &Decoded, encoding: Encoding, axes: Option<[bool; 2]>) -> Vec<Vec4> {
-        let reader = Reader::new(picture, encoding);
-        let light = || Light::new(picture, encoding, if encoding == Encoding::Normal { 2 } else { 3 });
-        let crossover = match axes {
-            None => Crossover::new(picture, encoding),
-            Some(axes) => Some(Crossover::along(axes, picture, encoding, light())),
-        };
-        let [width, height] = picture.size;
-        let texel = |i: u32| {
-            let (x, y) = (i % width, i / width);
-            let texel = crossover.as_ref().and_then(|crossover| crossover.texel(x, y));
-            texel.unwrap_or_else(|| reader.texel(x, y))
-        };
-        (0..width * height).into_par_iter().map(texel).collect()
+    /// Normals that stand up more or less.
+    fn normals(size: [u32; 2]) -> Decoded {
+        let grains = photograph(size, 0);
+        let texels = (0..size[0] * size[1]).map(|i| grains.texel(i % size[0], i / size[0]));
+        let samples = texels.flat_map(|[x, y, ..]| [x as u8 + 96, y as u8 + 96, 230]);
+        Decoded::rgb(size, samples.collect()).expect("a picture")
     }
 
     fn unblended(picture: &Decoded, encoding: Encoding) -> Vec<Vec4> {
-        blended(picture, encoding, Some([false, false]))
+        let reader = Reader::new(picture, encoding);
+        let [width, height] = picture.size;
+        (0..width * height).map(|i| reader.texel(i % width, i / width)).collect()
+    }
+
+    fn blended(picture: &Decoded, encoding: Encoding) -> Vec<Vec4> {
+        let crossover = Crossover::new(picture, encoding);
+        let texels = unblended(picture, encoding).into_par_iter().enumerate();
+        let [width, _] = picture.size;
+        let texel = |i: u32| crossover.texel(i % width, i / width);
+        texels.map(|(i, before)| texel(i as u32).unwrap_or(before)).collect()
     }
 
     /// Across and down: the mean step between neighbours, and that across the borders.
@@ -222,7 +212,7 @@ mod tests {
                 }
                 // Means of 64 steps or more, whose deviation is at most as large as they are: four
                 // deviations of one in eight.
-                for [inside, across] in steps(&blended(&picture, encoding, None), size) {
+                for [inside, across] in steps(&blended(&picture, encoding), size) {
                     assert!((across / inside - 1.0).abs() < 0.5, "{size:?}: {across} beside {inside}");
                 }
             }
@@ -232,7 +222,7 @@ mod tests {
     #[test]
     fn no_line_of_the_picture_is_a_seam() {
         let size = [256, 256];
-        let texels = blended(&photograph(size, 120), Encoding::Srgb, None);
+        let texels = blended(&photograph(size, 120), Encoding::Srgb);
         let line = |x: usize, dx: usize| {
             let step = |y: usize| texels[y * 256 + x % 256] - texels[y * 256 + (x + dx) % 256];
             (0..256).map(|y| step(y).abs().element_sum()).sum::<f32>()
@@ -246,7 +236,7 @@ mod tests {
     #[test]
     fn the_middle_is_untouched() {
         let picture = photograph([96, 80], 120);
-        let crossover = Crossover::new(&picture, Encoding::Srgb).expect("it does not wrap");
+        let crossover = Crossover::new(&picture, Encoding::Srgb);
         for (x, y) in (0..96).flat_map(|x| (0..80).map(move |y| (x, y))) {
             let is_middle = (12..84).contains(&x) && (10..70).contains(&y);
             assert_eq!(crossover.texel(x, y).is_none(), is_middle, "{x}, {y}");
@@ -255,8 +245,9 @@ mod tests {
 
     #[test]
     fn colours_keep_their_distribution() {
-        let picture = photograph([256, 256], 0);
         for encoding in [Encoding::Srgb, Encoding::Linear, Encoding::Normal] {
+            let size = [256, 256];
+            let picture = if encoding == Encoding::Normal { normals(size) } else { photograph(size, 0) };
             let moments = |texels: Vec<Vec4>| {
                 let count = texels.len() as f32;
                 let mean = texels.iter().map(|texel| texel.truncate()).sum::<Vec3>() / count;
@@ -269,7 +260,7 @@ mod tests {
                 _ => *texel,
             };
             let before = moments(unblended(&picture, encoding).iter().map(whole).collect());
-            let after = moments(blended(&picture, encoding, Some([true; 2])).iter().map(whole).collect());
+            let after = moments(blended(&picture, encoding).iter().map(whole).collect());
             // A grain's light is shared by four texels, and a texel stands in up to four others: of 65,536
             // texels 4096 count by themselves, seven sixteenths of them blended. Four deviations of their
             // mean are (4 · √(7/16) / 64) = 1/24 of theirs; of their variance √2 times that.
@@ -286,11 +277,9 @@ mod tests {
         for size in [[1, 1], [1, 40], [40, 1], [2, 2], [3, 5], [9, 9], [17, 4]] {
             let picture = photograph(size, 120);
             for encoding in [Encoding::Srgb, Encoding::Linear, Encoding::Normal] {
-                for axes in [None, Some([true; 2])] {
-                    for texel in blended(&picture, encoding, axes) {
-                        assert!(texel.is_finite(), "{size:?}, {encoding:?}");
-                        assert!(texel.abs().max_element() <= 1.0, "{size:?}, {encoding:?}: {texel}");
-                    }
+                for texel in blended(&picture, encoding) {
+                    assert!(texel.is_finite(), "{size:?}, {encoding:?}");
+                    assert!(texel.abs().max_element() <= 1.0, "{size:?}, {encoding:?}: {texel}");
                 }
             }
         }
@@ -299,21 +288,10 @@ mod tests {
     #[test]
     fn a_flat_picture_stays_as_it_is() {
         let picture = Decoded::rgb([16, 16], [10, 200, 60].repeat(256)).expect("a picture");
-        assert!(Crossover::new(&picture, Encoding::Srgb).is_none());
         let before = unblended(&picture, Encoding::Srgb);
-        for (before, after) in before.iter().zip(blended(&picture, Encoding::Srgb, Some([true; 2]))) {
+        for (before, after) in before.iter().zip(blended(&picture, Encoding::Srgb)) {
             assert!(before.abs_diff_eq(after, 1e-5), "{before} became {after}");
         }
-    }
-
-    #[test]
-    fn an_axis_that_wraps_is_left_alone() {
-        let size = [64, 64];
-        let slope = (0..64 * 64_u32).flat_map(|i| [(i / 64 * 3) as u8; 3]).collect();
-        let picture = Decoded::rgb(size, slope).expect("a picture");
-        let crossover = Crossover::new(&picture, Encoding::Linear).expect("it does not wrap down");
-        assert!((0..64).all(|x| (8..56).all(|y| crossover.texel(x, y).is_none())));
-        assert!((0..64).all(|x| crossover.texel(x, 0).is_some() && crossover.texel(x, 63).is_some()));
     }
 
     #[test]
@@ -321,7 +299,7 @@ mod tests {
         let picture = photograph([300, 200], 120);
         let on = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-            pool.install(|| blended(&picture, Encoding::Srgb, None))
+            pool.install(|| blended(&picture, Encoding::Srgb))
         };
         assert_eq!(on(1), on(3));
     }

@@ -72,7 +72,7 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
     let axes = Axes::of(&light);
     let mut ranks = Ranks::of(&light, &axes, wanted.compress != Compression::None);
     let inside = match wanted.borders {
-        Borders::Auto => borders::differ(&light).contains(&true),
+        Borders::Auto => borders::differ(&light),
         Borders::Repeat => false,
         Borders::Inside => true,
     };
