@@ -11,7 +11,7 @@
 
 use crate::diagnostic::{Diagnostic, Place, limits};
 use crate::graph::Graph;
-use crate::manifest::{Encoding, Form, Manifest, Pass, Recipe, Resource, Sampler, Texture};
+use crate::manifest::{Encoding, Form, Manifest, Pass, Recipe, Resource, Sampler, Texture, Tileable};
 use std::collections::BTreeMap;
 
 /// A host with limits.
@@ -160,7 +160,8 @@ fn likeness(resource: &Resource) -> Option<Likeness> {
     let filter = |sampler: &Sampler| sampler.filter as u8;
     let code = |encoding: Encoding| encoding as u8;
     match &resource.recipe {
-        Recipe::Image { encoding, .. } => {
+        // Patterns are not made to wrap.
+        Recipe::Image { encoding, tileable: Tileable::None, .. } => {
             sampler.map(|s| Likeness::Image(s.wrap as u8, filter(s), code(*encoding)))
         }
         Recipe::Patterns { encoding, .. } => sampler.map(|s| Likeness::Patterns(filter(s), code(*encoding))),

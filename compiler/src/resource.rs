@@ -6,7 +6,7 @@
 
 use crate::diagnostic::{Diagnostic, Place, constructors};
 use crate::graph::{Constant, FunctionId, Scalar, Texel, View, ViewDimension};
-use crate::manifest::{Encoding, Filter, Format, Recipe, Space, Stop, Wrap};
+use crate::manifest::{Encoding, Filter, Format, Recipe, Space, Stop, Tileable, Wrap};
 
 mod exemplar;
 mod indices;
@@ -306,7 +306,8 @@ pub static KINDS: &[Kind] = &[
     Kind {
         name: "image",
         constructor: "(path: text, wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
-                      encoding: srgb | linear | normal = srgb, anisotropy: int = 1) -> image",
+                      encoding: srgb | linear | normal = srgb, anisotropy: int = 1, \
+                      tileable: none | blend = none) -> image",
         doc: "A picture with its mip levels.",
         gives: None,
         fields: &[Field { name: "pixels", kind: FieldKind::View(PIXELS) }],
@@ -576,8 +577,12 @@ pub fn dimension_of(kind: &'static Kind) -> (&'static str, Option<u8>) {
 fn make_image(a: &Arguments) -> Result<Made, Diagnostic> {
     let sampler = a.sampler(a.wrap())?;
     let path = a.paths("path").into_iter().next().unwrap_or_default();
+    let tileable = if a.word("tileable") == "blend" { Tileable::Blend } else { Tileable::None };
+    if tileable == Tileable::Blend && sampler.wrap != Wrap::Repeat {
+        return Err(constructors::tileable_without_repeat(a.place("tileable"), a.word("wrap")));
+    }
     Ok(Made {
-        recipe: Recipe::Image { path, encoding: a.encoding() },
+        recipe: Recipe::Image { path, encoding: a.encoding(), tileable },
         constants: Vec::new(),
         sampler: Some(sampler),
         lender: None,

@@ -28,7 +28,7 @@ fn scaled(program: &Program, size: [u32; 2], scale: [f32; 2]) -> Request {
 }
 
 fn image(path: &str) -> Recipe {
-    Recipe::Image { path: path.into(), encoding: Encoding::Linear }
+    Recipe::Image { path: path.into(), encoding: Encoding::Linear, tileable: Tileable::None }
 }
 
 #[test]

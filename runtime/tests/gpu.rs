@@ -16,7 +16,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use std::fs;
 use std::path::Path;
 use std::sync::{Arc, Mutex};
-use texgraph_compiler::manifest::{Encoding, Filter, IndicesSource, Recipe, Value, Wrap};
+use texgraph_compiler::manifest::{Encoding, Filter, IndicesSource, Recipe, Tileable, Value, Wrap};
 use texgraph_compiler::{Library, Options, Program, compile};
 use texgraph_runtime::cpu;
 use texgraph_runtime::gpu::{Gpu, Preference};
@@ -110,7 +110,8 @@ fn images_agree(gpu: &Gpu) -> Result<(), Failed> {
     for path in ["even.png", "odd.png"] {
         for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
             for filter in [Filter::Linear, Filter::Nearest] {
-                let recipe = Recipe::Image { path: path.into(), encoding: Encoding::Linear };
+                let recipe =
+                    Recipe::Image { path: path.into(), encoding: Encoding::Linear, tileable: Tileable::None };
                 let (program, tables) = sampled(folder.path(), recipe, wrap, filter);
                 for scale in [[0.25, 0.25], [1.0, 1.0], [3.0, 3.0], [16.0, 2.0], [1.0, 5.3]] {
                     compare(gpu, &program, &tables, &scaled(&program, [64, 64], scale), FILTERED)?;
@@ -128,7 +129,7 @@ fn encodings_agree(gpu: &Gpu) -> Result<(), Failed> {
     write_deep(&folder.path().join("deep.png"), [32, 32], &deep);
     for path in ["a.png", "deep.png"] {
         for encoding in [Encoding::Srgb, Encoding::Linear, Encoding::Normal] {
-            let recipe = Recipe::Image { path: path.into(), encoding };
+            let recipe = Recipe::Image { path: path.into(), encoding, tileable: Tileable::None };
             let (program, tables) = sampled(folder.path(), recipe, Wrap::Repeat, Filter::Linear);
             compare(gpu, &program, &tables, &scaled(&program, [64, 64], [0.5, 0.5]), FILTERED)?;
             compare(gpu, &program, &tables, &scaled(&program, [64, 64], [4.0, 4.0]), FILTERED)?;
@@ -276,7 +277,7 @@ fn a_broken_shader_is_an_error(gpu: &Gpu) -> Result<(), Failed> {
 fn missing_tables_are_errors(gpu: &Gpu) -> Result<(), Failed> {
     let folder = folder();
     write_picture(&folder.path().join("a.png"), [4, 4], &[100; 16]);
-    let recipe = Recipe::Image { path: "a.png".into(), encoding: Encoding::Linear };
+    let recipe = Recipe::Image { path: "a.png".into(), encoding: Encoding::Linear, tileable: Tileable::None };
     let (program, mut tables) = sampled(folder.path(), recipe, Wrap::Repeat, Filter::Linear);
     let refused =
         |tables: &Tables| matches!(gpu.prepare(&program, tables, 0), Err(RenderError::NoTable { .. }));

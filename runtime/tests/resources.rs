@@ -5,10 +5,18 @@ mod common;
 use common::{folder, load_recipes, write_deep, write_picture};
 use std::fs;
 use std::path::Path;
-use texgraph_compiler::manifest::{Encoding, Format, IndicesSource, Recipe, Table};
+use texgraph_compiler::manifest::{
+    Borders, Compression, Encoding, Format, IndicesSource, Recipe, Table, Tileable,
+};
+use texgraph_runtime::resource::Decoded;
+use texgraph_runtime::resource::exemplar::{self, Wanted};
 
 fn image(path: &str, encoding: Encoding) -> Recipe {
-    Recipe::Image { path: path.into(), encoding }
+    Recipe::Image { path: path.into(), encoding, tileable: Tileable::None }
+}
+
+fn tileable(path: &str, encoding: Encoding) -> Recipe {
+    Recipe::Image { path: path.into(), encoding, tileable: Tileable::Blend }
 }
 
 fn patterns(paths: &[&str], grid: [u32; 2]) -> Recipe {
@@ -97,6 +105,75 @@ fn sixteen_bits_become_half_floats() {
     let halves: Vec<f32> =
         bytes.chunks(2).map(|pair| half::f16::from_le_bytes([pair[0], pair[1]]).to_f32()).collect();
     assert_eq!(halves, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.5, 0.5, 0.5, 1.0]);
+}
+
+/// Steps across a picture's borders, in those inside: across and down.
+fn seams(size: [u32; 2], bytes: &[u8]) -> [f64; 2] {
+    let texels = size[0] as usize * size[1] as usize;
+    let samples = bytes.chunks_exact(4).take(texels).flat_map(|texel| [texel[0], texel[1], texel[2]]);
+    let picture = Decoded::rgb(size, samples.collect()).expect("a picture");
+    let wanted = Wanted {
+        encoding: Encoding::Srgb,
+        channels: 3,
+        borders: Borders::Auto,
+        lut: 256,
+        compress: Compression::None,
+    };
+    exemplar::steps(&picture, &wanted).map(|[inside, across]| across / inside)
+}
+
+#[test]
+fn photographs_are_made_to_wrap() {
+    let photos = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/photos");
+    for photo in ["gravel.jpg", "sand.jpg", "forest_floor.jpg"] {
+        let (table, before) = made(&photos, image(photo, Encoding::Srgb));
+        let (_, after) = made(&photos, tileable(photo, Encoding::Srgb));
+        let size = [table.levels[0].width, table.levels[0].height];
+        let [across, down] = seams(size, &before);
+        assert!(across > exemplar::SEAM && down > exemplar::SEAM, "{photo}: {across}, {down}");
+        // A mean of 512 steps.
+        let [across, down] = seams(size, &after);
+        assert!(across < 1.2 && down < 1.2, "{photo}: {across}, {down}");
+        for (y, (before, after)) in before.chunks(512 * 4).zip(after.chunks(512 * 4)).take(512).enumerate() {
+            let is_inner = (64..448).contains(&y);
+            assert_eq!(before[64 * 4..448 * 4] == after[64 * 4..448 * 4], is_inner, "{photo}: {y}");
+        }
+    }
+}
+
+#[test]
+fn pictures_of_every_form_are_made_to_wrap() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let slope = |y: usize, x: usize| (40 + 2 * x + y) as u8;
+    let grid = || (0..33).flat_map(|y| (0..64).map(move |x| (y, x)));
+    let grey: Vec<u8> = grid().map(|(y, x)| slope(y, x)).collect();
+    write_picture(&at("grey.png"), [64, 33], &grey);
+    let deep: Vec<u16> = grey.iter().map(|sample| u16::from(*sample) * 257).collect();
+    write_deep(&at("deep.png"), [64, 33], &deep);
+    let clear: Vec<u8> = grid().flat_map(|(y, x)| [200, slope(y, x), 30, slope(y, x)]).collect();
+    write_picture(&at("clear.png"), [64, 33], &clear);
+
+    // Grey stays grey, and both depths tell the same.
+    let (_, bytes) = made(folder.path(), tileable("grey.png", Encoding::Linear));
+    assert!(
+        bytes.chunks_exact(4).all(|texel| texel[0] == texel[1] && texel[1] == texel[2] && texel[3] == 255)
+    );
+    let (table, floats) = made(folder.path(), tileable("deep.png", Encoding::Linear));
+    assert_eq!(table.format, Format::Rgba16Float);
+    for (texel, deep) in bytes.chunks_exact(4).zip(floats.chunks_exact(8)) {
+        let deep = half::f16::from_le_bytes([deep[0], deep[1]]).to_f32() * 255.0;
+        assert!((deep - f32::from(texel[0])).abs() < 1.0, "{deep} for {}", texel[0]);
+    }
+    // Halfway down, at the left border, stands what stands in the middle: of alpha too.
+    let (_, bytes) = made(folder.path(), tileable("clear.png", Encoding::Linear));
+    let alpha = bytes[4 * 64 * 16 + 3];
+    assert!(alpha.abs_diff(slope(16, 32)) <= 2, "{alpha}");
+    // Slopes of unit normals.
+    let (_, bytes) = made(folder.path(), tileable("clear.png", Encoding::Normal));
+    let normal = [0, 1, 2].map(|k| f32::from(bytes[4 * 64 * 16 + k] as i8) / 127.0);
+    let length = normal.iter().map(|x| x * x).sum::<f32>();
+    assert!((length - 1.0).abs() < 0.03, "{normal:?}");
 }
 
 #[test]

@@ -130,6 +130,13 @@ pub fn anisotropy_of_nearest(place: Place) -> Diagnostic {
         .help("leave `anisotropy:` or `filter:` out")
 }
 
+/// A picture made to wrap, which is not sampled so.
+pub fn tileable_without_repeat(place: Place, wrap: &str) -> Diagnostic {
+    let message = format!("with `wrap: {wrap}` a picture's borders never meet");
+    Diagnostic::new("E0556", place, message, "nothing to blend")
+        .help("leave `tileable:` out, or repeat the picture: `wrap: repeat`")
+}
+
 /// Channels of an exemplar that its encoding does not have.
 pub fn channels_of_exemplar(place: Place, asked: u32, encoding: Encoding) -> Diagnostic {
     let (of, fit) = match encoding {

@@ -14,7 +14,7 @@ mod texture;
 
 pub use interface::{Axis, Gradient, Input, Output, Param, Scalar, Source, Type, Uniform, Value};
 pub use pass::{Argument, Call, Form, Gradients, Pass};
-pub use recipe::{Borders, Compression, Encoding, IndicesSource, Recipe, Resource, Space, Stop};
+pub use recipe::{Borders, Compression, Encoding, IndicesSource, Recipe, Resource, Space, Stop, Tileable};
 pub use table::{Format, Level, Table};
 pub use texture::{Filter, SampleKind, Sampler, Texture, ViewDimension, Wrap};
 

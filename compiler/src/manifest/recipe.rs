@@ -28,6 +28,9 @@ pub enum Recipe {
         path: String,
         /// How its numbers are read.
         encoding: Encoding,
+        /// Whether it is made to wrap.
+        #[serde(default, skip_serializing_if = "Tileable::is_none")]
+        tileable: Tileable,
     },
     /// Interchangeable tiles, one layer each: field `layers`. Field `means`: the mean of each, a texel
     /// each in one row, and last that of all.
@@ -280,6 +283,24 @@ pub enum Borders {
     Repeat,
     /// They may not.
     Inside,
+}
+
+/// How a picture that does not wrap is made to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tileable {
+    /// Not at all.
+    #[default]
+    None,
+    /// An eighth of it at each border is crossed over with its middle, with the histogram kept.
+    Blend,
+}
+
+impl Tileable {
+    /// Whether the picture stays as it is.
+    pub fn is_none(&self) -> bool {
+        *self == Tileable::None
+    }
 }
 
 /// A colour of a ramp.

@@ -54,6 +54,11 @@ impl Decoded {
         matches!(self.channels, 2 | 4)
     }
 
+    /// Whether red, green and blue are one channel.
+    pub fn is_grey(&self) -> bool {
+        self.channels <= 2
+    }
+
     /// Whether no texel lets anything through.
     pub fn is_opaque(&self) -> bool {
         let mut is_opaque = true;

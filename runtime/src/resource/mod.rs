@@ -142,7 +142,7 @@ pub(crate) fn make(
     known: &[Resource],
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     match recipe {
-        Recipe::Image { path, encoding } => image::make(project, place, path, *encoding),
+        Recipe::Image { path, encoding, tileable } => image::make(project, place, path, *encoding, *tileable),
         Recipe::Patterns { paths, grid, encoding } => {
             patterns::make(project, place, paths, *grid, Shape::Plane, *encoding)
         }

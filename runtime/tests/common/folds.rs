@@ -8,7 +8,7 @@ use texgraph_compiler::graph::{
     Axis, Builder, Constant, Fold, Function, FunctionId, Graph, Level, Operation, ParamId, Sampled, Texel,
     Type, Value, View, ViewDimension, ViewId,
 };
-use texgraph_compiler::manifest::{Filter, IndicesSource, Recipe, Wrap};
+use texgraph_compiler::manifest::{Filter, IndicesSource, Recipe, Tileable, Wrap};
 use texgraph_runtime::resource::{Tables, load};
 
 fn operator(b: &mut Builder, name: &str, signature: &str, x: Value, y: Value) -> Value {
@@ -306,8 +306,11 @@ pub fn gathered(folder: &Path, picture: &str) -> (Program, Tables) {
             return sum / 9.0;
         }";
     let mut program = program(graph(vec![body.finish(), condition.finish(), b.finish()]), wgsl);
-    let picture =
-        Recipe::Image { path: picture.into(), encoding: texgraph_compiler::manifest::Encoding::Linear };
+    let picture = Recipe::Image {
+        path: picture.into(),
+        encoding: texgraph_compiler::manifest::Encoding::Linear,
+        tileable: Tileable::None,
+    };
     let row = (0..32).map(|i| i32::from(i % 7 == 6)).collect();
     let map = Recipe::Indices { source: IndicesSource::Rows(vec![row]), levels: 2 };
     let resources = (0..).zip([picture, map]);

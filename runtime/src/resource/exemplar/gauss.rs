@@ -16,9 +16,40 @@ pub fn cumulative(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 
+/// The way back from [`share_below`], by a table.
+pub struct Quantiles {
+    /// The shares below numbers at even steps from 0 to 1.
+    shares: Vec<f64>,
+}
+
+impl Quantiles {
+    /// Makes the table, of so many steps.
+    pub fn new(steps: usize) -> Quantiles {
+        Quantiles { shares: (0..=steps).map(|step| share_below(step as f64 / steps as f64)).collect() }
+    }
+
+    /// The number in 0..1 that a share in 0..1 lies below; within a step shares are taken to be even.
+    pub fn number(&self, share: f64) -> f64 {
+        let steps = self.shares.len() - 1;
+        let next = self.shares.partition_point(|below| *below <= share).clamp(1, steps);
+        let [low, high] = [self.shares[next - 1], self.shares[next]];
+        (next as f64 - 1.0 + ((share - low) / (high - low)).clamp(0.0, 1.0)) / steps as f64
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::share_below;
+    use super::{Quantiles, share_below};
+
+    #[test]
+    fn the_way_back_from_shares_leads_back() {
+        let quantiles = Quantiles::new(1 << 14);
+        for i in 0..=1000 {
+            let number = f64::from(i) / 1000.0;
+            let found = quantiles.number(share_below(number));
+            assert!((found - number).abs() < 1e-6, "{found} for {number}");
+        }
+    }
 
     #[test]
     fn all_numbers_lie_in_0_to_1() {

@@ -9,6 +9,7 @@
 
 mod axes;
 mod borders;
+mod crossover;
 mod gauss;
 mod inverse;
 mod light;
@@ -20,6 +21,7 @@ use super::table::{self, Made};
 use crate::project::Project;
 use axes::Axes;
 pub use borders::SEAM;
+pub use crossover::Crossover;
 pub(crate) use gauss::cumulative;
 use light::Light;
 use ranks::Ranks;

@@ -88,18 +88,42 @@ impl Ranks {
     /// Counts, and finds the ranks where stored numbers change. `is_scaled`: channels are stored as far
     /// spread as their numbers are, the widest as far as ever.
     pub fn of(light: &Light<'_>, axes: &Axes, is_scaled: bool) -> Ranks {
-        let mut channels: Vec<Channel> =
-            (0..axes.channels).map(|axis| Channel::new(light, axes, axis)).collect();
-        count(light, axes, &mut channels);
-        channels.iter_mut().for_each(Channel::measure);
-        let widest = channels.iter().map(|channel| channel.range).fold(0.0, f64::max);
-        for (axis, channel) in channels.iter_mut().enumerate() {
+        let mut ranks = Ranks::counted(light, axes);
+        let widest = ranks.channels.iter().map(|channel| channel.range).fold(0.0, f64::max);
+        for (axis, channel) in ranks.channels.iter_mut().enumerate() {
             if is_scaled && channel.range > 0.0 {
                 channel.spread = channel.range / widest;
             }
             channel.order(light, axes, axis);
         }
+        ranks
+    }
+
+    /// Counts only: enough for [`Ranks::bin`], [`Ranks::shares`] and [`Ranks::inverse`], but not for what
+    /// has to do with stored numbers.
+    pub fn counted(light: &Light<'_>, axes: &Axes) -> Ranks {
+        let mut channels: Vec<Channel> =
+            (0..axes.channels).map(|axis| Channel::new(light, axes, axis)).collect();
+        count(light, axes, &mut channels);
+        channels.iter_mut().for_each(Channel::measure);
         Ranks { texels: light.texels(), channels }
+    }
+
+    /// The same, with what it knows of each texel forgotten: twice the picture's bytes.
+    pub fn without_texels(mut self) -> Ranks {
+        self.channels.iter_mut().for_each(|channel| channel.bins = Vec::new());
+        self
+    }
+
+    /// How a number along a channel's axis is found in [`Ranks::shares`].
+    pub fn bin(&self, channel: usize, number: f32) -> usize {
+        usize::from(self.channels[channel].scale.bin(number))
+    }
+
+    /// For each bin of a channel, from the least on, the share of texels below its middle one.
+    pub fn shares(&self, channel: usize) -> impl Iterator<Item = f64> {
+        let pairs = self.channels[channel].before.windows(2);
+        pairs.map(|pair| (f64::from(pair[0]) + f64::from(pair[1])) / 2.0 / self.texels as f64)
     }
 
     /// Writes the Gaussian picture: red, green and blue are the channels, 0 where there are less, alpha
