@@ -382,7 +382,7 @@ pub struct Graph {
 #[derive(clap::Args)]
 #[command(after_help = INSPECT)]
 pub struct Inspect {
-    /// The picture: PNG, JPEG or TGA
+    /// The picture: PNG, JPEG, TGA, OpenEXR or HDR
     pub picture: PathBuf,
     /// The PNG file that is written: the picture repeated, and its blends
     #[arg(short, value_name = "SHEET.png")]

@@ -78,7 +78,7 @@ impl Tiles {
 #[derive(clap::Args)]
 #[command(after_help = MAKE)]
 pub struct Make {
-    /// The photograph: PNG, JPEG or TGA
+    /// The photograph: PNG, JPEG, TGA, OpenEXR or HDR
     pub photo: PathBuf,
     /// The PNG file that is written
     #[arg(short, value_name = "OUT.png")]
@@ -145,7 +145,7 @@ pub struct Layout {
 #[derive(clap::Args)]
 #[command(after_help = CHECK)]
 pub struct Check {
-    /// The sheet: PNG, JPEG or TGA
+    /// The sheet: PNG, JPEG, TGA, OpenEXR or HDR
     pub sheet: PathBuf,
     /// Tiles across and down the sheet, at most 256
     #[arg(long, value_name = "CxR", default_value = "4x4", value_parser = grid)]

@@ -184,6 +184,7 @@ def stochastic():
         afar = ["repeated", "plain", "filtered", "blended"]
         row([drawn(blocks["repeated"], name, 280) for name in afar], "stochastic_levels.jpg")
         row([drawn(blocks["lit_once"], name, 480) for name in ["lit_once", "lit_floor"]], "stochastic_normals.jpg")
+        row([drawn(blocks["cut"], name, 480) for name in ["cut", "tileable"]], "stochastic_tileable.jpg")
 
 
 if __name__ == "__main__":

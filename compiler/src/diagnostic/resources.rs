@@ -40,7 +40,7 @@ pub fn file_too_large(place: Place, path: &str, limit: u64) -> Diagnostic {
 /// Bytes that are no whole picture.
 pub fn not_a_picture(place: Place, path: &str, reason: &str) -> Diagnostic {
     Diagnostic::new("E0505", place, format!("`{path}` can't be read as a picture"), reason)
-        .help("PNG, JPEG and TGA pictures with 8 or 16 bits a channel are read")
+        .help("PNG, JPEG and TGA pictures with 8 or 16 bits a channel, OpenEXR and HDR are read")
 }
 
 /// A picture that claims, or has, more texels than are decoded.

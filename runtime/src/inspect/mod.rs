@@ -101,7 +101,7 @@ impl From<RenderError> for InspectError {
     }
 }
 
-/// Looks at a picture file: PNG, JPEG or TGA.
+/// Looks at a picture file: PNG, JPEG, TGA, OpenEXR or HDR.
 ///
 /// # Errors
 /// It can't be read, is too large for a texture, or there is no memory to draw it.

@@ -1,16 +1,22 @@
-//! Picture files: PNG, JPEG and TGA to rows of 8- or 16-bit samples.
+//! Picture files: PNG, JPEG and TGA to rows of 8- or 16-bit samples, OpenEXR and Radiance HDR to 16-bit
+//! floats.
 //!
 //! A header may lie, so the size is checked before a texel is allocated, and everything a decoder
 //! says against a file becomes an error with the file's name. Pictures are taken as stored:
-//! colour profiles, gamma chunks and a camera's orientation are not looked at.
+//! colour profiles, gamma chunks and a camera's orientation are not looked at. All samples are codes of
+//! 16 bits at most, so that what they stand for is looked up, floats' too.
 
 use crate::project::{Problem, Project};
+use half::f16;
 use image::{ColorType, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 use texgraph_compiler::diagnostic::{Diagnostic, Place, resources};
 
 /// The longest side that is decoded, in texels. A texture may be smaller still.
 pub const MAX_SIDE: u32 = 16_384;
+
+/// Why samples are not read.
+const UNKNOWN: &str = "its samples are neither of 8 or 16 bits nor floats";
 
 /// The most bytes that a decoder may use.
 const MAX_BYTES: u64 = 1 << 30;
@@ -20,12 +26,72 @@ pub struct Decoded {
     /// Texels across and down.
     pub size: [u32; 2],
     channels: usize,
+    /// What a code of its samples is.
+    pub depth: Depth,
     samples: Samples,
 }
 
 enum Samples {
     Eight(Vec<u8>),
     Sixteen(Vec<u16>),
+}
+
+/// What a sample's code is.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Depth {
+    /// A share of 255.
+    Eight,
+    /// A share of 65,535.
+    Sixteen,
+    /// A 16-bit float's bits. Colours are light, not encoded.
+    Half,
+}
+
+impl Depth {
+    /// Whether 8 bits don't hold it.
+    pub fn is_deep(self) -> bool {
+        self != Depth::Eight
+    }
+
+    /// The code of an alpha that lets nothing through.
+    pub fn opaque(self) -> u16 {
+        match self {
+            Depth::Eight => u16::from(u8::MAX),
+            Depth::Sixteen => u16::MAX,
+            Depth::Half => f16::ONE.to_bits(),
+        }
+    }
+
+    /// The greatest code.
+    pub fn last(self) -> u16 {
+        if self == Depth::Eight { u16::from(u8::MAX) } else { u16::MAX }
+    }
+
+    /// The number that a code is: 0..1, or any that a 16-bit float can be. What is no number is 0.
+    pub fn number(self, code: u16) -> f32 {
+        match self {
+            Depth::Eight => f32::from(code) / 255.0,
+            Depth::Sixteen => f32::from(code) / 65535.0,
+            Depth::Half => float(f16::from_bits(code)),
+        }
+    }
+
+    /// Which of so many equal parts of 0..1 a code's number lies in.
+    pub fn part(self, code: u16, parts: u32) -> u32 {
+        match self {
+            Depth::Half => (f64::from(self.number(code)) * f64::from(parts)) as u32,
+            _ => (u64::from(code) * u64::from(parts) / (u64::from(self.last()) + 1)) as u32,
+        }
+        .min(parts.saturating_sub(1))
+    }
+}
+
+/// A 16-bit float as a finite number.
+fn float(half: f16) -> f32 {
+    match half.is_nan() {
+        true => 0.0,
+        false => half.to_f32().clamp(f16::MIN.to_f32(), f16::MAX.to_f32()),
+    }
 }
 
 impl Decoded {
@@ -35,18 +101,9 @@ impl Decoded {
         (samples.len() == 3 * texels).then_some(Decoded {
             size,
             channels: 3,
+            depth: Depth::Eight,
             samples: Samples::Eight(samples),
         })
-    }
-
-    /// Whether a sample has 16 bits rather than 8.
-    pub fn is_deep(&self) -> bool {
-        matches!(self.samples, Samples::Sixteen(_))
-    }
-
-    /// The greatest sample: 255 or 65535.
-    pub fn white(&self) -> u16 {
-        if self.is_deep() { u16::MAX } else { u16::from(u8::MAX) }
     }
 
     /// Whether there is a channel of alpha.
@@ -63,9 +120,9 @@ impl Decoded {
     pub fn is_opaque(&self) -> bool {
         let mut is_opaque = true;
         if self.has_alpha() {
-            let white = self.white();
+            let opaque = self.depth.opaque();
             let texels = self.size[0] as usize * self.size[1] as usize;
-            self.read(0, texels, |_, texel| is_opaque &= texel[3] == white);
+            self.read(0, texels, |_, texel| is_opaque &= texel[3] == opaque);
         }
         is_opaque
     }
@@ -73,15 +130,15 @@ impl Decoded {
     /// Gives so many texels to a function with their number from 0 on, row by row from the `first` on:
     /// as [`Decoded::texel`] gives them, faster.
     pub fn read(&self, first: usize, count: usize, mut each: impl FnMut(usize, [u16; 4])) {
-        let (white, channels) = (self.white(), self.channels);
+        let (opaque, channels) = (self.depth.opaque(), self.channels);
         let range = first * channels..(first + count) * channels;
         match &self.samples {
-            Samples::Eight(samples) => read_texels(&samples[range], channels, white, &mut each),
-            Samples::Sixteen(samples) => read_texels(&samples[range], channels, white, &mut each),
+            Samples::Eight(samples) => read_texels(&samples[range], channels, opaque, &mut each),
+            Samples::Sixteen(samples) => read_texels(&samples[range], channels, opaque, &mut each),
         }
     }
 
-    /// Red, green, blue and alpha as stored. Grey gives (v, v, v); without alpha it is white.
+    /// Red, green, blue and alpha as stored. Grey gives (v, v, v); without alpha it is opaque.
     pub fn texel(&self, x: u32, y: u32) -> [u16; 4] {
         let at = (y as usize * self.size[0] as usize + x as usize) * self.channels;
         let s = |channel: usize| match &self.samples {
@@ -89,9 +146,9 @@ impl Decoded {
             Samples::Sixteen(samples) => samples.get(at + channel).copied().unwrap_or(0),
         };
         match self.channels {
-            1 => [s(0), s(0), s(0), self.white()],
+            1 => [s(0), s(0), s(0), self.depth.opaque()],
             2 => [s(0), s(0), s(0), s(1)],
-            3 => [s(0), s(1), s(2), self.white()],
+            3 => [s(0), s(1), s(2), self.depth.opaque()],
             _ => [s(0), s(1), s(2), s(3)],
         }
     }
@@ -100,19 +157,19 @@ impl Decoded {
 fn read_texels<T: Copy + Into<u16>>(
     samples: &[T],
     channels: usize,
-    white: u16,
+    opaque: u16,
     each: &mut impl FnMut(usize, [u16; 4]),
 ) {
     match channels {
         1 => samples
             .iter()
             .enumerate()
-            .for_each(|(i, s)| each(i, [(*s).into(), (*s).into(), (*s).into(), white])),
+            .for_each(|(i, s)| each(i, [(*s).into(), (*s).into(), (*s).into(), opaque])),
         2 => samples.as_chunks().0.iter().enumerate().for_each(|(i, [s, a])| {
             each(i, [(*s).into(), (*s).into(), (*s).into(), (*a).into()]);
         }),
         3 => samples.as_chunks().0.iter().enumerate().for_each(|(i, [r, g, b])| {
-            each(i, [(*r).into(), (*g).into(), (*b).into(), white]);
+            each(i, [(*r).into(), (*g).into(), (*b).into(), opaque]);
         }),
         _ => samples.as_chunks().0.iter().enumerate().for_each(|(i, [r, g, b, a])| {
             each(i, [(*r).into(), (*g).into(), (*b).into(), (*a).into()]);
@@ -128,8 +185,8 @@ pub struct PictureFile<'a> {
     format: ImageFormat,
     /// Texels across and down.
     pub size: [u32; 2],
-    /// Whether a sample has 16 bits rather than 8.
-    pub is_deep: bool,
+    /// What a code of its samples is.
+    pub depth: Depth,
 }
 
 /// Reads a picture file of the project, and its header.
@@ -139,11 +196,12 @@ pub struct PictureFile<'a> {
 pub fn open<'a>(project: &Project, path: &'a str, place: Place) -> Result<PictureFile<'a>, Vec<Diagnostic>> {
     let bytes = project.read(path).map_err(|error| vec![unread(place, path, error.problem)])?;
     let refuse = |reason: &str| vec![resources::not_a_picture(place, path, reason)];
-    let format = format(&bytes, path).ok_or_else(|| refuse("it is no PNG, JPEG or TGA file"))?;
+    let format =
+        format(&bytes, path).ok_or_else(|| refuse("it is no PNG, JPEG, TGA, OpenEXR or HDR file"))?;
     if format == ImageFormat::Jpeg && !is_whole_jpeg(&bytes) {
         return Err(refuse("the file ends too early"));
     }
-    let mut file = PictureFile { path, place, bytes, format, size: [0, 0], is_deep: false };
+    let mut file = PictureFile { path, place, bytes, format, size: [0, 0], depth: Depth::Eight };
     let decoder = file.decoder()?;
     let (width, height) = decoder.dimensions();
     if width > MAX_SIDE || height > MAX_SIDE || decoder.total_bytes() > MAX_BYTES {
@@ -152,11 +210,10 @@ pub fn open<'a>(project: &Project, path: &'a str, place: Place) -> Result<Pictur
     if width == 0 || height == 0 {
         return Err(refuse("it has no texels"));
     }
-    let (_, is_deep) =
-        layout(decoder.color_type()).ok_or_else(|| refuse("its samples have neither 8 nor 16 bits"))?;
+    let (_, depth) = layout(decoder.color_type()).ok_or_else(|| refuse(UNKNOWN))?;
     drop(decoder);
     file.size = [width, height];
-    file.is_deep = is_deep;
+    file.depth = depth;
     Ok(file)
 }
 
@@ -179,11 +236,10 @@ impl PictureFile<'_> {
         let mut decoder = self.decoder()?;
         let refused = |error: image::ImageError| self.refuse(&error.to_string());
         decoder.set_limits(limits(Some(MAX_SIDE))).map_err(refused)?;
-        let (channels, deep) = layout(decoder.color_type())
-            .ok_or_else(|| self.refuse("its samples have neither 8 nor 16 bits"))?;
+        let (channels, depth) = layout(decoder.color_type()).ok_or_else(|| self.refuse(UNKNOWN))?;
         let mut buffer = vec![0; decoder.total_bytes() as usize];
         decoder.read_image(&mut buffer).map_err(refused)?;
-        Ok(Decoded { size: self.size, channels, samples: samples(buffer, deep) })
+        Ok(Decoded { size: self.size, channels, depth, samples: samples(buffer, channels, depth) })
     }
 }
 
@@ -200,7 +256,7 @@ pub fn unread(place: Place, path: &str, problem: Problem) -> Diagnostic {
 
 /// By the first bytes; a TGA has no mark, so by its name.
 fn format(bytes: &[u8], path: &str) -> Option<ImageFormat> {
-    let known = [ImageFormat::Png, ImageFormat::Jpeg];
+    let known = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::OpenExr, ImageFormat::Hdr];
     let by_content = image::guess_format(bytes).ok().filter(|format| known.contains(format));
     let by_name = || ImageFormat::from_path(path).ok().filter(|format| *format == ImageFormat::Tga);
     by_content.or_else(by_name)
@@ -220,25 +276,40 @@ fn limits(side: Option<u32>) -> Limits {
     limits
 }
 
-/// Channels, and whether a sample has 16 bits.
-fn layout(color: ColorType) -> Option<(usize, bool)> {
+/// Channels, and what a sample is.
+fn layout(color: ColorType) -> Option<(usize, Depth)> {
     match color {
-        ColorType::L8 => Some((1, false)),
-        ColorType::La8 => Some((2, false)),
-        ColorType::Rgb8 => Some((3, false)),
-        ColorType::Rgba8 => Some((4, false)),
-        ColorType::L16 => Some((1, true)),
-        ColorType::La16 => Some((2, true)),
-        ColorType::Rgb16 => Some((3, true)),
-        ColorType::Rgba16 => Some((4, true)),
+        ColorType::L8 => Some((1, Depth::Eight)),
+        ColorType::La8 => Some((2, Depth::Eight)),
+        ColorType::Rgb8 => Some((3, Depth::Eight)),
+        ColorType::Rgba8 => Some((4, Depth::Eight)),
+        ColorType::L16 => Some((1, Depth::Sixteen)),
+        ColorType::La16 => Some((2, Depth::Sixteen)),
+        ColorType::Rgb16 => Some((3, Depth::Sixteen)),
+        ColorType::Rgba16 => Some((4, Depth::Sixteen)),
+        ColorType::Rgb32F => Some((3, Depth::Half)),
+        ColorType::Rgba32F => Some((4, Depth::Half)),
         _ => None,
     }
 }
 
-fn samples(buffer: Vec<u8>, deep: bool) -> Samples {
-    if !deep {
-        return Samples::Eight(buffer);
+fn samples(buffer: Vec<u8>, channels: usize, depth: Depth) -> Samples {
+    match depth {
+        Depth::Eight => Samples::Eight(buffer),
+        Depth::Sixteen => {
+            Samples::Sixteen(buffer.as_chunks().0.iter().map(|pair| u16::from_ne_bytes(*pair)).collect())
+        }
+        Depth::Half => {
+            let numbers = buffer.as_chunks().0.iter().map(|bytes| f32::from_ne_bytes(*bytes));
+            let mut halves: Vec<f16> = numbers.map(f16::from_f32).collect();
+            // OpenEXR's colours are multiplied by alpha, all others are not.
+            for texel in halves.chunks_exact_mut(4).filter(|_| channels == 4) {
+                let alpha = float(texel[3]);
+                if alpha > 0.0 {
+                    texel[..3].iter_mut().for_each(|color| *color = f16::from_f32(color.to_f32() / alpha));
+                }
+            }
+            Samples::Sixteen(halves.into_iter().map(f16::to_bits).collect())
+        }
     }
-    let pairs = buffer.chunks_exact(2);
-    Samples::Sixteen(pairs.map(|pair| u16::from_ne_bytes([pair[0], pair[1]])).collect())
 }

@@ -3,7 +3,7 @@
 //! Every table of numbers here is made with `libm`, whose results are the same on every machine,
 //! so that the same picture gives the same bytes everywhere.
 
-use super::decode::Decoded;
+use super::decode::{Decoded, Depth};
 use glam::Vec4;
 use half::f16;
 use texgraph_compiler::manifest::{Encoding, Format};
@@ -14,8 +14,8 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 }
 
 /// The format in which pictures of this encoding are stored.
-pub fn format(encoding: Encoding, deep: bool) -> Format {
-    match (encoding, deep) {
+pub fn format(encoding: Encoding, is_deep: bool) -> Format {
+    match (encoding, is_deep) {
         (_, true) => Format::Rgba16Float,
         (Encoding::Srgb, false) => Format::Rgba8UnormSrgb,
         (Encoding::Linear, false) => Format::Rgba8Unorm,
@@ -23,14 +23,19 @@ pub fn format(encoding: Encoding, deep: bool) -> Format {
     }
 }
 
-/// What samples of red, green or blue stand for in an encoding, from 0 to the greatest.
-pub fn curve(encoding: Encoding, white: u16) -> Vec<f32> {
-    let meaning = |sample: f64| match encoding {
-        Encoding::Srgb => srgb_to_linear(sample),
-        Encoding::Linear => sample,
-        Encoding::Normal => 2.0 * sample - 1.0,
+/// What codes of red, green or blue stand for in an encoding, from 0 to the greatest. Floats are light
+/// already.
+pub fn curve(encoding: Encoding, depth: Depth) -> Vec<f32> {
+    let meaning = |number: f64| match (encoding, depth) {
+        (Encoding::Srgb, Depth::Eight | Depth::Sixteen) => srgb_to_linear(number),
+        (Encoding::Srgb, Depth::Half) | (Encoding::Linear, _) => number,
+        (Encoding::Normal, _) => 2.0 * number - 1.0,
     };
-    (0..=white).map(|code| meaning(f64::from(code) / f64::from(white)) as f32).collect()
+    let number = |code: u16| match depth {
+        Depth::Half => f64::from(depth.number(code)),
+        Depth::Eight | Depth::Sixteen => f64::from(code) / f64::from(depth.last()),
+    };
+    (0..=depth.last()).map(|code| meaning(number(code)) as f32).collect()
 }
 
 /// Reads the texels of pictures in one encoding as the numbers that are filtered.
@@ -44,14 +49,14 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// Prepares to read a picture.
     pub fn new(picture: &'a Decoded, encoding: Encoding) -> Reader<'a> {
-        Reader { picture, encoding, curve: curve(encoding, picture.white()) }
+        Reader { picture, encoding, curve: curve(encoding, picture.depth) }
     }
 
     /// A texel: linear premultiplied light, data as it is, or a normal with alpha 1.
     pub fn texel(&self, x: u32, y: u32) -> Vec4 {
         let [red, green, blue, alpha] = self.picture.texel(x, y);
         let number = |sample: u16| self.curve[usize::from(sample)];
-        let alpha = f32::from(alpha) / f32::from(self.picture.white());
+        let alpha = self.picture.depth.number(alpha);
         let [red, green, blue] = [number(red), number(green), number(blue)];
         match self.encoding {
             Encoding::Srgb => Vec4::new(red * alpha, green * alpha, blue * alpha, alpha),
@@ -96,6 +101,8 @@ impl Writer {
             Format::Rgba8Snorm => bytes.copy_from_slice(&[r, g, b, a].map(snorm)),
             Format::Rgba16Float => {
                 for (slot, x) in bytes.chunks_exact_mut(2).zip([r, g, b, a]) {
+                    // What is too large is the largest: infinity would spread.
+                    let x = x.clamp(f16::MIN.to_f32(), f16::MAX.to_f32());
                     slot.copy_from_slice(&f16::from_f32(x).to_le_bytes());
                 }
             }

@@ -20,7 +20,7 @@ pub fn make(
     tileable: Tileable,
 ) -> Result<Vec<Made>, Vec<Diagnostic>> {
     let file = decode::open(project, path, place)?;
-    let format = encoding::format(encoding, file.is_deep);
+    let format = encoding::format(encoding, file.depth.is_deep());
     table::check(place, path, format, file.size, 1)?;
     let picture = file.decode()?;
     let reader = Reader::new(&picture, encoding);

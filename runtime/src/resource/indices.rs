@@ -63,7 +63,6 @@ fn of_picture(
     let size = file.size;
     let table = layout(path, size)?;
     let picture = file.decode()?;
-    let codes = u64::from(picture.white()) + 1;
     let mut numbers = Vec::with_capacity(size[0] as usize * size[1] as usize);
     for y in 0..size[1] {
         for x in 0..size[0] {
@@ -71,7 +70,7 @@ fn of_picture(
             if red != green || red != blue {
                 return Err(vec![resources::not_grey(place, path, [x, y])]);
             }
-            numbers.push((u64::from(red) * u64::from(levels) / codes) as i32);
+            numbers.push(picture.depth.part(red, levels) as i32);
         }
     }
     Ok((table, numbers))

@@ -104,9 +104,9 @@ impl<'a> Sheet<'a> {
         self.paths.first().map_or("", String::as_str)
     }
 
-    /// Whether a picture has 16 bits a sample.
+    /// Whether a picture has more than 8 bits a sample.
     pub fn is_deep(&self) -> bool {
-        self.files.iter().any(|file| file.is_deep)
+        self.files.iter().any(|file| file.depth.is_deep())
     }
 
     /// The pictures.

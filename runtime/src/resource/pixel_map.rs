@@ -45,7 +45,6 @@ pub fn make(
         )]);
     }
     let picture = file.decode()?;
-    let codes = u64::from(picture.white()) + 1;
     let mut stripe = vec![0; width as usize * block as usize];
     for top in (0..height).step_by(block as usize) {
         for (i, number) in (0..).zip(&mut stripe) {
@@ -54,7 +53,7 @@ pub fn make(
             if red != green || red != blue {
                 return Err(vec![resources::not_grey(place, path, [x, y])]);
             }
-            *number = (u64::from(red) * u64::from(levels) / codes) as u8;
+            *number = picture.depth.part(red, levels) as u8;
         }
         builder.stripe(&stripe);
     }

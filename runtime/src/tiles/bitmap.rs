@@ -3,7 +3,8 @@
 use super::TilesError;
 use crate::picture::PictureError;
 use crate::project::Project;
-use crate::resource::decode;
+use crate::resource::SrgbEncoder;
+use crate::resource::decode::{self, Depth};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use std::path::Path;
@@ -31,7 +32,8 @@ impl Bitmap {
         Bitmap { size, texels: (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| texel(x, y))).collect() }
     }
 
-    /// Reads a PNG, JPEG or TGA file of up to 8192 texels a side. Samples of 16 bits are rounded to 8.
+    /// Reads a picture file of up to 8192 texels a side. Samples of 16 bits are rounded to 8; the light of
+    /// floats is cut to 0..1 and encoded.
     ///
     /// # Errors
     /// The file can't be read, is no whole picture, or is too large.
@@ -44,11 +46,16 @@ impl Bitmap {
             return Err(vec![too_large]);
         }
         let picture = file.decode()?;
-        let code = |sample: u16| match picture.is_deep() {
-            true => ((u32::from(sample) * 255 + 32767) / 65535) as u8,
-            false => sample as u8,
+        let srgb = SrgbEncoder::new();
+        let byte = |code: u16| (picture.depth.number(code) * 255.0).round() as u8;
+        let color = |code: u16| match picture.depth {
+            Depth::Half => srgb.encode(picture.depth.number(code)),
+            Depth::Eight | Depth::Sixteen => byte(code),
         };
-        Ok(Bitmap::new(picture.size, |x, y| picture.texel(x, y).map(code)))
+        Ok(Bitmap::new(picture.size, |x, y| {
+            let [red, green, blue, alpha] = picture.texel(x, y);
+            [color(red), color(green), color(blue), byte(alpha)]
+        }))
     }
 
     /// Texels across and down.

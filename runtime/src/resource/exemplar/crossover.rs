@@ -98,7 +98,7 @@ impl<'a> Crossover<'a> {
                 sums[axis] += weight * channel.deviations[bin];
             }
             squares += weight * weight;
-            alpha += weight * f32::from(self.picture.texel(x, y)[3]) / f32::from(self.picture.white());
+            alpha += weight * self.picture.depth.number(self.picture.texel(x, y)[3]);
         }
         let mut numbers = Vec3::ZERO;
         for (axis, channel) in self.channels.iter().enumerate() {

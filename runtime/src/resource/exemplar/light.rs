@@ -1,6 +1,6 @@
 //! The numbers of a picture that are made Gaussian: linear light, data, or slopes.
 
-use crate::resource::decode::Decoded;
+use crate::resource::decode::{Decoded, Depth};
 use crate::resource::encoding;
 use texgraph_compiler::manifest::Encoding;
 
@@ -30,18 +30,37 @@ pub struct Light<'a> {
     is_normal: bool,
     /// What a sample stands for.
     curve: Vec<f32>,
+    /// The least and the greatest that a number can be.
+    ends: [f32; 2],
 }
 
 impl<'a> Light<'a> {
     /// Prepares to read a picture.
     pub fn new(picture: &'a Decoded, encoding: Encoding, channels: usize) -> Light<'a> {
-        Light {
+        let mut light = Light {
             picture,
             size: picture.size,
             channels: channels.clamp(1, MAX_CHANNELS),
             is_normal: encoding == Encoding::Normal,
-            curve: encoding::curve(encoding, picture.white()),
+            curve: encoding::curve(encoding, picture.depth),
+            ends: if encoding == Encoding::Normal { [-STEEPEST, STEEPEST] } else { [0.0, 1.0] },
+        };
+        if picture.depth == Depth::Half && !light.is_normal {
+            light.ends = light.found_ends();
         }
+        light
+    }
+
+    /// The least number of all texels, and the greatest.
+    fn found_ends(&self) -> [f32; 2] {
+        let mut ends = [f32::MAX, f32::MIN];
+        self.picture.read(0, self.texels(), |_, samples| {
+            for sample in &samples[..self.channels] {
+                let number = self.curve[usize::from(*sample)];
+                ends = [ends[0].min(number), ends[1].max(number)];
+            }
+        });
+        ends
     }
 
     /// How many texels there are.
@@ -51,7 +70,7 @@ impl<'a> Light<'a> {
 
     /// The least and the greatest that a number can be.
     pub fn range(&self) -> (f32, f32) {
-        if self.is_normal { (-STEEPEST, STEEPEST) } else { (0.0, 1.0) }
+        self.ends.into()
     }
 
     /// The numbers of up to a batch of texels, row by row from the `first` on; the rest is as it was.
@@ -76,8 +95,7 @@ impl<'a> Light<'a> {
     pub fn alpha(&self, first: usize, count: usize, alpha: &mut [u8; BATCH]) {
         match self.picture.has_alpha() && !self.is_normal {
             true => self.picture.read(first, count, |i, samples| {
-                let share = u32::from(samples[3]) * 510 / u32::from(self.picture.white());
-                alpha[i] = share.div_ceil(2) as u8;
+                alpha[i] = (self.picture.depth.number(samples[3]) * 255.0).round() as u8;
             }),
             false => alpha.fill(u8::MAX),
         }
