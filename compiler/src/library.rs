@@ -34,6 +34,7 @@ const FILES: &[(&str, &str)] = &[
     ("std/stone.tex", include_str!("../std/stone.tex")),
     ("std/hex.tex", include_str!("../std/hex.tex")),
     ("std/stochastic.tex", include_str!("../std/stochastic.tex")),
+    ("std/stochastic_volumes.tex", include_str!("../std/stochastic_volumes.tex")),
     ("std/filtering.tex", include_str!("../std/filtering.tex")),
     ("std/color.tex", include_str!("../std/color.tex")),
     ("std/matrix.tex", include_str!("../std/matrix.tex")),

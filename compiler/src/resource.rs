@@ -532,6 +532,26 @@ pub static KINDS: &[Kind] = &[
         make: exemplar::make,
     },
     Kind {
+        name: "exemplar<3>",
+        constructor: "(paths: texts, grid: ivec2 = 1, encoding: srgb | linear = srgb, channels: int = 3, \
+                      wrap: auto | repeat | inside = auto, lut: int = 256) -> exemplar",
+        doc: "A block of slices whose parts `stochastic` tiles and blends without end in space.",
+        gives: None,
+        fields: &[
+            Field { name: "gaussian", kind: FieldKind::View(LAYERS) },
+            Field { name: "inverse", kind: FieldKind::View(PIXELS) },
+            Field { name: "channels", kind: FieldKind::Constant },
+            Field { name: "normals", kind: FieldKind::Constant },
+            Field { name: "inside", kind: FieldKind::Constant },
+            Field { name: "width", kind: FieldKind::Constant },
+            Field { name: "bc", kind: FieldKind::Constant },
+            Field { name: "levels", kind: FieldKind::Constant },
+            Field { name: "depth", kind: FieldKind::Constant },
+        ],
+        view: None,
+        make: exemplar::make_volume,
+    },
+    Kind {
         name: "bake",
         constructor: "(field: node(uv: vec2) -> texel, size: ivec2 = 512, \
                       wrap: repeat | clamp | mirror = repeat, filter: linear | nearest = linear, \
@@ -554,7 +574,7 @@ pub fn made_by(row: usize) -> usize {
 pub const LATER: &[&str] = &["images", "volume", "sprites"];
 
 /// Kinds that have a dimension. In two it need not be written, in others it is part of the name.
-pub const DIMENSIONAL: &[&str] = &["indices", "patterns"];
+pub const DIMENSIONAL: &[&str] = &["indices", "patterns", "exemplar"];
 
 /// The row that a name stands for, with the dimension that is written after it.
 pub fn kind_named(name: &str, dimension: Option<u8>) -> Option<usize> {

@@ -16,6 +16,7 @@ const WIDTH: usize = 256;
 const WANTED: Wanted = Wanted {
     encoding: Encoding::Srgb,
     channels: 3,
+    slices: 1,
     borders: Borders::Repeat,
     lut: WIDTH as u32,
     compress: Compression::None,

@@ -22,6 +22,7 @@ fn exemplar(folder: &Path, path: &str) -> [Vec<u8>; 2] {
     let wanted = Wanted {
         encoding: Encoding::Linear,
         channels: 3,
+        slices: 1,
         borders: Borders::Repeat,
         lut: 256,
         compress: Compression::None,

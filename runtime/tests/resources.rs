@@ -115,11 +115,13 @@ fn seams(size: [u32; 2], bytes: &[u8]) -> [f64; 2] {
     let wanted = Wanted {
         encoding: Encoding::Srgb,
         channels: 3,
+        slices: 1,
         borders: Borders::Auto,
         lut: 256,
         compress: Compression::None,
     };
-    exemplar::steps(&picture, &wanted).map(|[inside, across]| across / inside)
+    let [across, down, _] = exemplar::steps(&picture, &wanted);
+    [across, down].map(|[inside, across]| across / inside)
 }
 
 #[test]
@@ -515,4 +517,43 @@ fn a_level_of_a_slice_is_the_mean_of_its_group() {
     }
     assert!(rest.is_empty());
     assert_eq!(codes(folder.path(), vec![volumes(4), volumes(0)]), ["E0551", "E0551"]);
+}
+
+#[test]
+fn volumes_of_sheets_and_of_lists_are_the_same() {
+    let folder = folder();
+    let code = |x: u32, y: u32, z: u32, k: u32| ((x * 37 + y * 59 + z * 83 + k * 11 + x * y * z) % 251) as u8;
+    let [width, height] = [8, 4];
+    let texel = |x: u32, y: u32, z: u32| [0, 1, 2].map(|k| code(x, y, z, k));
+    let sheet: Vec<u8> = (0..3 * height)
+        .flat_map(|y| (0..2 * width).map(move |x| (x, y)))
+        .flat_map(|(x, y)| texel(x % width, y % height, y / height * 2 + x / width))
+        .collect();
+    write_picture(&folder.path().join("sheet.png"), [2 * width, 3 * height], &sheet);
+    let names: Vec<String> = (0..6).map(|z| format!("slice_{z}.png")).collect();
+    for (z, name) in (0..).zip(&names) {
+        let slice: Vec<u8> = (0..width * height).flat_map(|i| texel(i % width, i / width, z)).collect();
+        write_picture(&folder.path().join(name), [width, height], &slice);
+    }
+    let volume = |paths: &[String], grid: [u32; 2]| Recipe::Volume {
+        paths: paths.to_vec(),
+        grid,
+        encoding: Encoding::Linear,
+        channels: 3,
+        borders: Borders::Auto,
+        lut: 256,
+    };
+    let (table, bytes) = made(folder.path(), volume(&["sheet.png".to_owned()], [2, 3]));
+    assert_eq!((table.format, table.layers, table.levels.len()), (Format::Rgba8Unorm, 6, 4));
+    let (_, others) = made(folder.path(), volume(&names, [1, 1]));
+    assert_eq!(bytes, others);
+    // From the third level on, four slices are one, and two.
+    let last = table.levels[2];
+    let layers = bytes[last.offset as usize..].chunks_exact(2 * 4).take(6).collect::<Vec<_>>();
+    assert!(layers[0] == layers[3] && layers[4] == layers[5] && layers[0] != layers[4], "{layers:?}");
+    // Slices of several forms don't make one block.
+    write_picture(&folder.path().join("slice_3.png"), [width, height], &[7; 32]);
+    assert_eq!(codes(folder.path(), vec![volume(&names, [1, 1])]), ["E0551"]);
+    write_picture(&folder.path().join("slice_3.png"), [4, 4], &[7; 48]);
+    assert_eq!(codes(folder.path(), vec![volume(&names, [1, 1])]).len(), 1);
 }

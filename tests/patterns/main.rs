@@ -15,6 +15,7 @@ mod oversampled;
 mod shapes;
 mod space;
 mod splat;
+mod stochastic_volumes;
 mod streams;
 mod strips;
 mod support;

@@ -45,14 +45,10 @@ pub fn too_many_patterns(place: Place, count: i64) -> Diagnostic {
 }
 
 /// More slices of patterns in space than one texture may hold.
-pub fn too_many_slices(place: Place, count: i64, depth: u32) -> Diagnostic {
-    Diagnostic::new(
-        "E0554",
-        place,
-        format!("these are {count} slices, from 1 to 256 are possible"),
-        format!("{} patterns of {depth} slices each", count / i64::from(depth)),
-    )
-    .help("a slice is a layer of a texture array, which has at most 256")
+pub fn too_many_slices(place: Place, count: i64, label: impl Into<String>) -> Diagnostic {
+    let message = format!("these are {count} slices, from 1 to 256 are possible");
+    Diagnostic::new("E0554", place, message, label)
+        .help("a slice is a layer of a texture array, which has at most 256")
 }
 
 /// Slices that make no whole number of patterns.

@@ -188,6 +188,23 @@ pub enum Recipe {
         /// How `gaussian` is compressed where adapters can read that.
         compress: Compression,
     },
+    /// An exemplar in space (§1.3 of the same): its slices are the cells of pictures. Field `gaussian` has a
+    /// layer for each, of which level l holds the mean of its group of 2^l; field `inverse` is that of
+    /// [`Recipe::Exemplar`].
+    Volume {
+        /// Picture files: one with `grid` cells, or one per slice.
+        paths: Vec<String>,
+        /// Columns and rows of the one picture; `[1, 1]` for a list of files. Row by row.
+        grid: [u32; 2],
+        /// How the numbers are read: `srgb` or `linear`.
+        encoding: Encoding,
+        /// 3, or 1 of grey slices.
+        channels: u32,
+        /// Whether parts may cross the borders.
+        borders: Borders,
+        /// Texels across `inverse`, 128 to 1024.
+        lut: u32,
+    },
     /// The texels of a pass of the program, mipmapped. Field `pixels`, whose table is known when
     /// compiling.
     Bake {
@@ -216,9 +233,10 @@ impl Recipe {
             | Recipe::Indices { source: IndicesSource::Path(path), .. }
             | Recipe::Line { source: IndicesSource::Path(path), .. }
             | Recipe::Stack { source: IndicesSource::Path(path), .. } => vec![path],
-            Recipe::Patterns { paths, .. } | Recipe::Strips { paths, .. } | Recipe::Volumes { paths, .. } => {
-                paths.iter().map(String::as_str).collect()
-            }
+            Recipe::Patterns { paths, .. }
+            | Recipe::Strips { paths, .. }
+            | Recipe::Volumes { paths, .. }
+            | Recipe::Volume { paths, .. } => paths.iter().map(String::as_str).collect(),
             Recipe::Indices { source: IndicesSource::Rows(_), .. }
             | Recipe::Line { source: IndicesSource::Rows(_), .. }
             | Recipe::Stack { source: IndicesSource::Rows(_), .. }

@@ -13,7 +13,11 @@ pub fn make(a: &Arguments) -> Result<Made, Diagnostic> {
         return Err(constructors::uneven_depth(a.place("depth"), depth, count));
     }
     if !(1..=MAX_LAYERS).contains(&count) {
-        return Err(constructors::too_many_slices(place, count, depth));
+        return Err(constructors::too_many_slices(
+            place,
+            count,
+            format!("{} patterns of {depth} slices each", count / i64::from(depth)),
+        ));
     }
     let mut constants = pattern_constants(a, count / i64::from(depth), 1);
     constants.push(("depth", Constant::ints(&[depth as i32])));

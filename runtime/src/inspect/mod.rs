@@ -111,7 +111,8 @@ pub fn inspect(library: &Library, path: &Path, asked: &Asked) -> Result<Report, 
     let blended = Blended::new(library, &project, picture.size, asked)?;
     let wanted = wanted(asked);
     let axes = exemplar::axes(&picture, &wanted);
-    let steps = exemplar::steps(&picture, &wanted).map(|[inside, across]| ratio(across, inside));
+    let [across, down, _] = exemplar::steps(&picture, &wanted);
+    let steps = [across, down].map(|[inside, across]| ratio(across, inside));
     drop(picture);
     let blends = [blended.draw(0)?, blended.draw(1)?, blended.draw(2)?, blended.draw(3)?];
     let [repeated, .., histogram] = &blends;
@@ -154,6 +155,7 @@ fn wanted(asked: &Asked) -> Wanted {
     Wanted {
         encoding: asked.encoding,
         channels,
+        slices: 1,
         borders: Borders::Auto,
         lut: 256,
         compress: Compression::None,

@@ -106,6 +106,38 @@ impl Decoded {
         })
     }
 
+    /// The cells of pictures, row by row, one below another; none where the pictures' samples differ in
+    /// form.
+    pub fn stacked(pictures: &[Decoded], [columns, rows]: [u32; 2]) -> Option<Decoded> {
+        let first = pictures.first()?;
+        if pictures.iter().any(|other| (other.channels, other.depth) != (first.channels, first.depth)) {
+            return None;
+        }
+        let [width, height] = [first.size[0] / columns, first.size[1] / rows];
+        // Where each row of each cell begins, in samples, and how many it has.
+        let length = width as usize * first.channels;
+        let begins = (0..rows * columns).flat_map(|cell| {
+            let [column, row] = [cell % columns, cell / columns];
+            let texel = move |y: u32| (row * height + y) as usize * first.size[0] as usize;
+            (0..height).map(move |y| (texel(y) + (column * width) as usize) * first.channels)
+        });
+        let begins: Vec<usize> = begins.collect();
+        let samples = match first.samples {
+            Samples::Eight(_) => Samples::Eight(cut(pictures, &begins, length, |samples| match samples {
+                Samples::Eight(samples) => samples,
+                Samples::Sixteen(_) => &[],
+            })?),
+            Samples::Sixteen(_) => {
+                Samples::Sixteen(cut(pictures, &begins, length, |samples| match samples {
+                    Samples::Eight(_) => &[],
+                    Samples::Sixteen(samples) => samples,
+                })?)
+            }
+        };
+        let size = [width, height * rows * columns * pictures.len() as u32];
+        Some(Decoded { size, channels: first.channels, depth: first.depth, samples })
+    }
+
     /// Whether there is a channel of alpha.
     pub fn has_alpha(&self) -> bool {
         matches!(self.channels, 2 | 4)
@@ -152,6 +184,19 @@ impl Decoded {
             _ => [s(0), s(1), s(2), s(3)],
         }
     }
+}
+
+/// The same rows of all pictures.
+fn cut<T: Copy>(
+    pictures: &[Decoded],
+    begins: &[usize],
+    length: usize,
+    of: impl Fn(&Samples) -> &[T],
+) -> Option<Vec<T>> {
+    let rows = pictures
+        .iter()
+        .flat_map(|picture| begins.iter().map(|at| of(&picture.samples).get(*at..at + length)));
+    Some(rows.collect::<Option<Vec<_>>>()?.concat())
 }
 
 fn read_texels<T: Copy + Into<u16>>(

@@ -37,7 +37,7 @@ use shape::Shape;
 use std::sync::Arc;
 use texgraph_compiler::Program;
 use texgraph_compiler::diagnostic::{Diagnostic, Place};
-use texgraph_compiler::manifest::{Manifest, Recipe, Resource, Table, Texture};
+use texgraph_compiler::manifest::{Compression, Manifest, Recipe, Resource, Table, Texture};
 
 /// The bytes of every texture of a program. Cloning shares them.
 #[derive(Clone, Debug, Default)]
@@ -167,8 +167,16 @@ pub(crate) fn make(
         Recipe::Tables { rows } => tables::make(place, rows, known),
         Recipe::Exemplar { path, encoding, channels, borders, lut, compress } => {
             let (encoding, channels, borders) = (*encoding, *channels, *borders);
-            let wanted = exemplar::Wanted { encoding, channels, borders, lut: *lut, compress: *compress };
+            let wanted =
+                exemplar::Wanted { encoding, channels, slices: 1, borders, lut: *lut, compress: *compress };
             exemplar::make(project, place, path, &wanted)
+        }
+        Recipe::Volume { paths, grid, encoding, channels, borders, lut } => {
+            let (encoding, channels, borders) = (*encoding, *channels, *borders);
+            let slices = u32::try_from(patterns::count(paths, *grid)).unwrap_or(u32::MAX);
+            let compress = Compression::None;
+            let wanted = exemplar::Wanted { encoding, channels, slices, borders, lut: *lut, compress };
+            exemplar::make_volume(project, place, paths, *grid, &wanted)
         }
         // Made by rendering its pass.
         Recipe::Bake { .. } => Ok(Vec::new()),

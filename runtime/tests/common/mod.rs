@@ -94,6 +94,7 @@ pub fn resource(recipe: Recipe, n: u32, wrap: Wrap, filter: Filter) -> Resource 
         Recipe::PixelMap { .. } => ("blocks", ViewDimension::D2, SampleKind::Int),
         Recipe::Ramp { .. } => ("colors", ViewDimension::D2, SampleKind::Float),
         Recipe::Exemplar { .. } => ("gaussian", ViewDimension::D2, SampleKind::Float),
+        Recipe::Volume { .. } => ("gaussian", ViewDimension::D2Array, SampleKind::Float),
         Recipe::Bake { .. } => ("pixels", ViewDimension::D2, SampleKind::Float),
     };
     let sampler =

@@ -16,6 +16,7 @@ mod light;
 mod ranks;
 
 use super::decode::{self, Decoded};
+use super::patterns::Sheet;
 use super::pyramid;
 use super::table::{self, Made};
 use crate::project::Project;
@@ -23,6 +24,7 @@ use axes::Axes;
 pub use borders::SEAM;
 pub use crossover::Crossover;
 pub(crate) use gauss::cumulative;
+use glam::{DVec3, Vec4};
 use light::Light;
 use ranks::Ranks;
 pub use ranks::scatter;
@@ -35,6 +37,8 @@ pub struct Wanted {
     pub encoding: Encoding,
     /// 3, 1 of a grey picture, 2 of normals.
     pub channels: u32,
+    /// Slices of a volume, which stand one below another in the picture; 1 of a picture.
+    pub slices: u32,
     /// Whether parts may cross the picture's borders.
     pub borders: Borders,
     /// Texels across `inverse`.
@@ -66,16 +70,40 @@ pub fn make(
     Ok(of_picture(&picture, wanted))
 }
 
+/// Makes the textures of a volume: `gaussian` has a layer for each slice.
+///
+/// # Errors
+/// As of [`make`]; or the slices are not of one form.
+pub fn make_volume(
+    project: &Project,
+    place: Place,
+    paths: &[String],
+    grid: [u32; 2],
+    wanted: &Wanted,
+) -> Result<Vec<Made>, Vec<Diagnostic>> {
+    let sheet = Sheet::open(project, place, paths, grid)?;
+    table::check(place, sheet.path(), Format::Rgba8Unorm, sheet.cell, sheet.count)?;
+    let picture = Decoded::stacked(&sheet.decode()?, grid).ok_or_else(|| {
+        let message = "the slices of a volume are stored in different ways";
+        vec![resources::no_table(place, message, "all grey or all coloured, of as many bits")]
+    })?;
+    Ok(of_picture(&picture, wanted))
+}
+
 /// The textures of a picture: fields `gaussian` and `inverse`.
 pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
-    let light = Light::new(picture, wanted.encoding, wanted.channels as usize);
+    let light = wanted.light(picture);
     let axes = Axes::of(&light);
     let mut ranks = Ranks::of(&light, &axes, wanted.compress != Compression::None);
     let inside = match wanted.borders {
-        Borders::Auto => borders::differ(&light),
+        Borders::Auto => borders::differ(&light, wanted.slices),
         Borders::Repeat => false,
         Borders::Inside => true,
     };
+    if wanted.slices > 1 {
+        let (gaussian, squares) = blocks(&light, &axes, &mut ranks, wanted.slices);
+        return vec![gaussian, inverse::make(&axes, &ranks, &squares, wanted.lut, inside)];
+    }
     let is_fine = wanted.encoding == Encoding::Normal && wanted.compress == Compression::None;
     let (mut squares, mut floats) = (Vec::new(), Vec::new());
     let gaussian = pyramid::extend(
@@ -95,16 +123,46 @@ pub fn of_picture(picture: &Decoded, wanted: &Wanted) -> Vec<Made> {
     vec![gaussian, inverse]
 }
 
+/// The Gaussian numbers of a volume, and their mean squares on its levels from 1 on.
+fn blocks(light: &Light<'_>, axes: &Axes, ranks: &mut Ranks, slices: u32) -> (Made, Vec<DVec3>) {
+    let [width, height] = [light.size[0], light.size[1] / slices];
+    let mut first = vec![0; 4 * light.texels()];
+    ranks.write(light, axes, &mut first);
+    let number = |texel: &[u8; 4]| Vec4::from_array(texel.map(f32::from)) / 255.0;
+    let (texels, _) = first.as_chunks::<4>();
+    let texel = |slice: u32, x: u32, y: u32| number(&texels[((slice * height + y) * width + x) as usize]);
+    let gaussian = pyramid::build_blocks("gaussian", Format::Rgba8Unorm, [width, height], [1, slices], texel);
+    let (table, bytes) = (&gaussian.table, &gaussian.bytes);
+    let squares = table.levels[1..].iter().map(|level| {
+        let length = level.bytes(table.format) as usize;
+        let (texels, _) = bytes[level.offset as usize..][..length].as_chunks::<4>();
+        inverse::mean_squares(&texels.iter().map(number).collect::<Vec<Vec4>>())
+    });
+    let mut squares: Vec<DVec3> = squares.collect();
+    // Slices beyond the last level's group: all is lost one level further.
+    if slices > 1 << squares.len() {
+        let sum = texels.iter().map(|texel| number(texel).truncate().as_dvec3()).sum::<DVec3>();
+        squares.push((sum / texels.len() as f64).powf(2.0));
+    }
+    (gaussian, squares)
+}
+
+impl Wanted {
+    fn light<'a>(&self, picture: &'a Decoded) -> Light<'a> {
+        Light::new(picture, self.encoding, self.channels as usize)
+    }
+}
+
 /// The axes of a picture's colours, unit vectors, as many as it has channels.
 pub fn axes(picture: &Decoded, wanted: &Wanted) -> Vec<[f32; 3]> {
-    let axes = Axes::of(&Light::new(picture, wanted.encoding, wanted.channels as usize));
+    let axes = Axes::of(&wanted.light(picture));
     axes.directions[..axes.channels].to_vec()
 }
 
-/// Across and down: the mean difference of neighbours, and that of the first texel from the last. Where
-/// the second is more than [`SEAM`] times the first the picture is taken not to wrap.
-pub fn steps(picture: &Decoded, wanted: &Wanted) -> [[f64; 2]; 2] {
-    borders::steps(&Light::new(picture, wanted.encoding, wanted.channels as usize))
+/// Across, down and through slices: the mean difference of neighbours, and that of the first texel from
+/// the last. Where the second is more than [`SEAM`] times the first the picture is taken not to wrap.
+pub fn steps(picture: &Decoded, wanted: &Wanted) -> [[f64; 2]; 3] {
+    borders::steps(&wanted.light(picture), wanted.slices)
 }
 
 #[cfg(test)]
@@ -119,6 +177,7 @@ mod tests {
     const WANTED: Wanted = Wanted {
         encoding: Encoding::Srgb,
         channels: 3,
+        slices: 1,
         borders: Borders::Auto,
         lut: 256,
         compress: Compression::None,
