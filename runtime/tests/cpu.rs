@@ -7,7 +7,7 @@ use common::{folder, manifest, write_picture};
 use texgraph_compiler::graph::{Builder, Constant, Function, FunctionId, Graph, Scalar, Type, Value};
 use texgraph_compiler::intrinsic::Intrinsic;
 use texgraph_compiler::manifest::{
-    self, Encoding, Filter, Format, Input, Level, Output, Recipe, Source, Table, Wrap,
+    self, Encoding, Filter, Format, Input, Level, Output, Recipe, Source, Table, Tileable, Wrap,
 };
 use texgraph_compiler::{Pass, Program};
 use texgraph_runtime::cpu;
