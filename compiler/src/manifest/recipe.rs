@@ -173,7 +173,8 @@ pub enum Recipe {
     /// [`Recipe::INVERSE_LEVELS`] levels of channel 0, then of channel 1, and so on: what the channel
     /// adds to the colour (linear light, not premultiplied; of normals their slopes) where its Gaussian
     /// number is (x + ½)/`lut`, filtered as that level is; rows beyond the last level repeat it. Its
-    /// alpha is 1 where parts must not cross the picture's borders, else 0.
+    /// alpha is added to each of red, green and blue, which are what is left. One more row is 1 where
+    /// parts must not cross the picture's borders, else 0.
     Exemplar {
         /// The picture file.
         path: String,

@@ -139,7 +139,7 @@ fn measure(library: &Library, file: &str, encoding: Encoding, wrap: &str, is_bri
     let photo = Photo { programs: programs.into(), side, encoding };
     let (_, program, tables) = &photo.programs[1];
     let inverse = floats(table(program, tables, "inverse"));
-    let is_inside = inverse[3] > 0.5;
+    let is_inside = inverse.ends_with(&[1.0]);
     println!("\n{file}, {side}², wrap: {}", if is_inside { "inside" } else { "repeat" });
     if !is_normal {
         let close = returned(&picture.to_rgb8(), table(program, tables, "gaussian"), &inverse);
@@ -197,13 +197,14 @@ fn floats(bytes: &[u8]) -> Vec<f32> {
 /// The share of texels of which no channel is further off than one step, there and back.
 fn returned(picture: &image::RgbImage, gaussian: &[u8], inverse: &[f32]) -> f64 {
     let encoder = SrgbEncoder::new();
-    let rows = 3 * 14;
+    let rows = 3 * 14 + 1;
     let width = inverse.len() / 4 / rows;
     let channel = |channel: usize, code: u8| {
         let at = (f32::from(code) / 255.0 * width as f32 - 0.5).clamp(0.0, (width - 1) as f32);
         let (i, share) = ((at as usize).min(width - 2), at - (at as usize).min(width - 2) as f32);
-        let entry = |i: usize| &inverse[4 * (channel * 14 * width + i)..][..3];
-        [0, 1, 2].map(|k| entry(i)[k] * (1.0 - share) + entry(i + 1)[k] * share)
+        let entry = |i: usize| &inverse[4 * (channel * 14 * width + i)..][..4];
+        let color = |i: usize| [0, 1, 2].map(|k| entry(i)[k] + entry(i)[3]);
+        [0, 1, 2].map(|k| color(i)[k] * (1.0 - share) + color(i + 1)[k] * share)
     };
     let texels = picture.pixels().zip(gaussian.chunks_exact(4));
     let close = texels.filter(|(texel, codes)| {
@@ -246,10 +247,11 @@ impl Photo {
         let (_, program, tables) = &self.programs[1];
         let inverse = floats(table(program, tables, "inverse"));
         let channels = if self.encoding == Encoding::Normal { 2 } else { 3 };
-        let width = inverse.len() / 4 / (14 * channels);
+        let width = inverse.len() / 4 / (14 * channels + 1);
         let axis = |channel: usize| {
             let row = &inverse[4 * 14 * width * channel..][..4 * width];
-            let difference = [0, 1, 2].map(|k| f64::from(row[4 * (width - 1) + k] - row[k]));
+            let color = |x: usize, k: usize| f64::from(row[4 * x + k]) + f64::from(row[4 * x + 3]);
+            let difference = [0, 1, 2].map(|k| color(width - 1, k) - color(0, k));
             let length = difference.iter().map(|x| x * x).sum::<f64>().sqrt();
             (length > 1e-3).then(|| difference.map(|x| x / length))
         };

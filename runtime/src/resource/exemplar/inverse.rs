@@ -5,8 +5,9 @@
 //! around its own, with the variance that level l lost; the table's row l is T⁻¹ averaged so.
 //!
 //! Entries are colours: what a channel adds along its axis, so that a shader has nothing to do but to
-//! add the channels up. They are given relative to the mean, of which each channel has its part: 16-bit
-//! floats are finest near 0.
+//! add the channels up. A 16-bit float tells light less finely than the lesser axes of most photographs
+//! spread; so alpha holds what red, green and blue have in common, and they what is left, near 0, where
+//! floats are finest.
 
 use super::axes::Axes;
 use super::gauss::DEVIATION;
@@ -14,6 +15,7 @@ use super::ranks::Ranks;
 use crate::resource::encoding::Writer;
 use crate::resource::table::Made;
 use glam::{DVec3, Vec4};
+use half::f16;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use texgraph_compiler::manifest::{Format, Recipe, Table};
 
@@ -37,10 +39,11 @@ pub fn mean_squares(level: &[Vec4]) -> DVec3 {
 /// Makes field `inverse`. `squares` are the mean squares of the Gaussian picture's levels from 1 on.
 pub fn make(axes: &Axes, ranks: &Ranks, squares: &[DVec3], width: u32, is_inside: bool) -> Made {
     let levels = Recipe::INVERSE_LEVELS;
-    let size = [width, levels * axes.channels as u32];
+    // The last row tells whether parts stay inside.
+    let size = [width, levels * axes.channels as u32 + 1];
     let table = Table::with_levels(Format::Rgba16Float, size, 1, 1);
     let curves: Vec<Curve> = (0..axes.channels).map(|channel| Curve::new(ranks, channel, width)).collect();
-    let rows = (0..size[1]).into_par_iter().map(|row| {
+    let rows = (0..levels * axes.channels as u32).into_par_iter().map(|row| {
         let (channel, level) = ((row / levels) as usize, (row % levels) as usize);
         let level = level.min(squares.len());
         let lost = |level: usize| match level {
@@ -63,9 +66,14 @@ pub fn make(axes: &Axes, ranks: &Ranks, squares: &[DVec3], width: u32, is_inside
         let along = DVec3::from_array(axes.directions[channel].map(f64::from));
         let offset = if ranks.is_flat(channel) { 0.0 } else { value - axes.mean_along(channel) };
         let part = along * offset + DVec3::from_array(axes.mean) / axes.channels as f64;
-        // A single channel is grey.
+        // A single channel is grey. Slopes along two axes have nothing in common.
         let part = if axes.channels == 1 { DVec3::splat(part.x) } else { part };
-        writer.write(part.as_vec3().extend(f32::from(u8::from(is_inside))), slot);
+        let common = if axes.channels == 2 { 0.0 } else { f16::from_f64(part.element_sum() / 3.0).to_f64() };
+        writer.write((part - common).as_vec3().extend(common as f32), slot);
+    }
+    let last = bytes.len() - 8 * width as usize;
+    for slot in bytes[last..].chunks_exact_mut(8) {
+        writer.write(Vec4::splat(f32::from(u8::from(is_inside))), slot);
     }
     Made { field: "inverse", table, bytes }
 }

@@ -40,6 +40,9 @@ struct Channel {
     bins: Vec<u16>,
     /// How many texels are in the bins before each bin, and last how many there are.
     before: Vec<u32>,
+    /// The least number in each bin, and the greatest. Many pictures have few numbers, each of several
+    /// percent of all texels, which the way back must not miss.
+    ends: Vec<[f32; 2]>,
     /// The number that each bin is stored as; from [`STEPPED`] on the place of its steps.
     codes: Vec<u16>,
     steps: Vec<Steps>,
@@ -50,6 +53,22 @@ struct Channel {
     range: f64,
     /// What deviations of Gaussian numbers are multiplied by where they are stored, at most 1.
     spread: f64,
+}
+
+/// What a bin holds.
+#[derive(Clone, Copy)]
+struct Bin {
+    texels: u32,
+    ends: [f32; 2],
+}
+
+impl Bin {
+    const EMPTY: Bin = Bin { texels: 0, ends: [f32::MAX, f32::MIN] };
+
+    fn plus(self, other: Bin) -> Bin {
+        let ends = [self.ends[0].min(other.ends[0]), self.ends[1].max(other.ends[1])];
+        Bin { texels: self.texels + other.texels, ends }
+    }
 }
 
 /// Codes from here on are of bins that hold several numbers.
@@ -174,7 +193,8 @@ impl Ranks {
         let bin = channel.before.partition_point(|before| f64::from(*before) <= rank).clamp(1, BINS) - 1;
         let bin = (0..=bin).rev().find(|bin| channel.count(*bin) > 0).unwrap_or(bin);
         let within = (rank - f64::from(channel.before[bin])) / f64::from(channel.count(bin).max(1));
-        channel.scale.number(bin as f64 + within.clamp(0.0, 1.0) - 0.5)
+        let [least, most] = channel.ends[bin].map(f64::from);
+        least + (most - least) * within.clamp(0.0, 1.0)
     }
 
     /// The mean of the squares of a channel's Gaussian numbers, as they are stored.
@@ -193,7 +213,7 @@ fn count(light: &Light<'_>, axes: &Axes, channels: &mut [Channel]) {
     let bands: Vec<Vec<&mut [u16]>> =
         (0..texels.div_ceil(BAND)).map(|_| bins.iter_mut().filter_map(Iterator::next).collect()).collect();
     // As many counts as threads, whatever band each takes: sums of integers don't mind.
-    let none = || vec![vec![0_u32; BINS]; scales.len()];
+    let none = || vec![vec![Bin::EMPTY; BINS]; scales.len()];
     let share = bands.len().div_ceil(rayon::current_num_threads());
     let counts =
         bands.into_par_iter().enumerate().with_min_len(share).fold(none, |mut counts, (band, mut bins)| {
@@ -209,21 +229,25 @@ fn count(light: &Light<'_>, axes: &Axes, channels: &mut [Channel]) {
                     for (slot, place) in slots.iter_mut().zip(&places) {
                         *slot = scale.bin(*place);
                     }
-                    slots.iter().for_each(|slot| counts[axis][usize::from(*slot)] += 1);
+                    for (slot, place) in slots.iter().zip(&places) {
+                        let bin = &mut counts[axis][usize::from(*slot)];
+                        *bin = bin.plus(Bin { texels: 1, ends: [*place; 2] });
+                    }
                 }
             }
             counts
         });
-    let counts = counts.reduce(none, |mut sum, other| {
+    let counts = counts.reduce_with(|mut sum, other| {
         for (sum, other) in sum.iter_mut().flatten().zip(other.iter().flatten()) {
-            *sum += other;
+            *sum = sum.plus(*other);
         }
         sum
     });
-    for (channel, counts) in channels.iter_mut().zip(counts) {
-        let running = counts.iter().scan(0, |sum, count| {
+    for (channel, counts) in channels.iter_mut().zip(counts.unwrap_or_default()) {
+        channel.ends = counts.iter().map(|bin| bin.ends).collect();
+        let running = counts.iter().scan(0, |sum, bin| {
             let before = *sum;
-            *sum += count;
+            *sum += bin.texels;
             Some(before)
         });
         channel.before = running.chain(std::iter::once(texels as u32)).collect();
@@ -251,17 +275,6 @@ impl Scale {
         (place.clamp(0.0, (BINS - 1) as f32) + 8_388_608.0).to_bits() as u16
     }
 
-    /// The number at a place among the bins; bin b reaches from b - ½ to b + ½.
-    fn number(&self, place: f64) -> f64 {
-        let [fine, coarse] = self.bins.map(f64::from);
-        let [low, high] = self.fine.map(f64::from);
-        let place = place - f64::from(self.first);
-        let end = (high - low) * fine;
-        let near = place.clamp(0.0, end);
-        let beyond = if coarse > 0.0 { (place - near) / coarse } else { 0.0 };
-        low + near / fine + beyond
-    }
-
     /// The order of a texel: first by its number, then hashed.
     fn key(&self, number: f32, texel: usize) -> u64 {
         (u64::from((number - self.low).max(0.0).to_bits()) << 32) | u64::from(scatter(texel as u32))
@@ -286,6 +299,7 @@ impl Channel {
             scale: Scale::new([least, most], axes.mean_along(axis) as f32, deviation),
             bins: vec![0; light.texels()],
             before: Vec::new(),
+            ends: Vec::new(),
             codes: vec![u16::from(MIDDLE); BINS],
             steps: Vec::new(),
             stored: Vec::new(),
@@ -299,8 +313,7 @@ impl Channel {
     fn measure(&mut self) {
         let filled = |bin: &usize| self.count(*bin) > 0;
         let ends = [(0..BINS).find(filled), (0..BINS).rfind(filled)].map(Option::unwrap_or_default);
-        let [first, last] = ends.map(|bin| self.scale.number(bin as f64));
-        self.range = last - first;
+        self.range = f64::from(self.ends[ends[1]][1]) - f64::from(self.ends[ends[0]][0]);
         self.is_flat = self.range <= FLAT;
     }
 
