@@ -2,10 +2,12 @@
 //! variances of 16 × 16 repeats, texel by texel and filtered, beside those of linear blending.
 //!
 //! Run with `cargo bench -p texgraph-runtime --no-default-features --bench stochastic`; `-- rock.jpg` for
-//! some of the photographs only, `-- brief` for the first level only, `-- autocorrelation` or `-- seams`
-//! for what is told of those instead.
+//! some of the photographs only, `-- brief` for the first level only, `-- autocorrelation`, `-- means`,
+//! `-- seams` or `-- blocks` for what is told of those instead; `-- blocks FOLDER/` draws there too.
 
 mod autocorrelation;
+mod blocks;
+mod means;
 mod seams;
 
 use half::f16;
@@ -40,12 +42,19 @@ fn main() {
     let asked: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
     let library = Library::standard().expect("the library is right");
     let is_asked = |file: &str| {
-        let mut names = asked.iter().filter(|name| name.contains('.')).peekable();
+        let mut names = asked.iter().filter(|name| name.contains('.') && !name.ends_with('/')).peekable();
         names.peek().is_none() || names.any(|name| name == file)
     };
     let photos = PHOTOS.iter().filter(|(file, _)| is_asked(file));
     if asked.iter().any(|name| name == "autocorrelation") {
         return autocorrelation::tell(&library, photos);
+    }
+    if asked.iter().any(|name| name == "blocks") {
+        let folder = asked.iter().find_map(|name| name.strip_suffix('/'));
+        return blocks::tell(&library, photos, folder.map(Path::new));
+    }
+    if asked.iter().any(|name| name == "means") {
+        return means::tell(&library, photos);
     }
     if asked.iter().any(|name| name == "seams") {
         return seams::tell(&library, photos);
