@@ -26,6 +26,9 @@ const OF_TYPES: [&str; 11] =
 /// Places that are shown of one error, besides the first, because others follow from it.
 const MORE: usize = 3;
 
+/// Arguments of a call that must all be wrong for the call to be.
+const SEVERAL: usize = 3;
+
 /// The endings of files that programs read.
 const ENDINGS: [&str; 10] =
     [".bmp", ".dds", ".exr", ".hdr", ".jpeg", ".jpg", ".ktx2", ".png", ".ron", ".tga"];
@@ -40,6 +43,10 @@ pub(super) fn leave_out(texts: &Texts, diagnostics: Vec<Diagnostic>) -> Vec<Diag
     });
     let diagnostics =
         first_of_each(diagnostics, "and here", |diagnostic| unknown_name(&texts.look(diagnostic)?));
+    let calls = mistaken_calls(texts, &diagnostics);
+    let diagnostics = first_of_each(diagnostics, "nor does this", |diagnostic| {
+        argument(&texts.look(diagnostic)?).map(|(call, _)| call).filter(|call| calls.contains(call))
+    });
     let heads = wrong_heads(texts, &diagnostics);
     let diagnostics = first_of_each(diagnostics, "and here", |diagnostic| {
         called(&texts.look(diagnostic)?).filter(|head| heads.contains(head))
@@ -182,6 +189,31 @@ pub(super) fn site<'t, 'a>(look: &Look<'t, 'a>) -> Option<&'t Site<'a>> {
 /// The same by the place of its name.
 fn called(look: &Look) -> Option<(u32, Span)> {
     callee(look).map(|node| (look.place.file, node.name.span))
+}
+
+/// The calls of several arguments, none of which fits: another node is meant.
+fn mistaken_calls(texts: &Texts, diagnostics: &[Diagnostic]) -> FxHashSet<(u32, Span)> {
+    let mut wrong: FxHashMap<(u32, Span), FxHashSet<usize>> = FxHashMap::default();
+    let mut mistaken = FxHashSet::default();
+    for look in diagnostics.iter().take(MOST).filter_map(|diagnostic| texts.look(diagnostic)) {
+        let Some((call, position)) = argument(&look) else { continue };
+        let wrong = wrong.entry(call).or_default();
+        wrong.insert(position);
+        let count = look.names.argument(look.span()).map_or(0, |(site, _)| site.call.arguments.len());
+        if wrong.len() >= count.max(SEVERAL) {
+            mistaken.insert(call);
+        }
+    }
+    mistaken
+}
+
+/// The call by the place of its name, and which of its arguments an error is about.
+fn argument(look: &Look) -> Option<((u32, Span), usize)> {
+    if look.code != "E0214" && !OF_CALLS.contains(&look.code) {
+        return None;
+    }
+    let (site, position) = look.names.argument(look.span())?;
+    Some(((look.place.file, site.call.name.span), position))
 }
 
 /// The nodes that are called several times, and never rightly.

@@ -26,6 +26,9 @@ impl<'a> Checker<'a> {
         bound: Bound,
         place: Place,
     ) -> Wire {
+        if bound.wires.iter().any(has_unknown) {
+            return Wire::Unknown;
+        }
         let mut values = Vec::new();
         for ((input, wire), at) in head.inputs.iter().zip(&bound.wires).zip(&bound.places) {
             if let Wire::List(items) = wire
@@ -175,6 +178,15 @@ impl<'a> Checker<'a> {
         let stands_for = KINDS[resource.kind].view?;
         let (_, view) = resource.views.iter().find(|(field, _)| *field == stands_for)?;
         view_field(f, *view, name)
+    }
+}
+
+/// Whether something in a list is wrong, which was said already.
+fn has_unknown(wire: &Wire) -> bool {
+    match wire {
+        Wire::Unknown => true,
+        Wire::List(items) => items.iter().any(|(item, _)| has_unknown(item)),
+        _ => false,
     }
 }
 
